@@ -47,6 +47,7 @@ pub struct Invalid {
 
 impl Invalid {
     /// `key` was `value`, but `expected` was needed.
+    #[allow(clippy::needless_pass_by_value)] // numbers are passed as they are, at a dozen places
     pub fn new(key: impl Into<String>, value: impl ToString, expected: impl Into<String>) -> Self {
         Self { key: key.into(), value: value.to_string(), expected: expected.into() }
     }

@@ -126,8 +126,8 @@ impl<const D: usize> Particles<D> {
 
 /// Volume of a ball of the given radius in `D` dimensions: `2 R`, `pi R^2`, `4 pi R^3 / 3`, ...
 pub fn ball_volume<const D: usize>(radius: f64) -> f64 {
-    let mut volume = if D % 2 == 0 { 1.0 } else { 2.0 };
-    let mut dimension = if D % 2 == 0 { 2 } else { 3 };
+    let mut volume = if D.is_multiple_of(2) { 1.0 } else { 2.0 };
+    let mut dimension = if D.is_multiple_of(2) { 2 } else { 3 };
     while dimension <= D {
         volume *= 2.0 * std::f64::consts::PI / dimension as f64;
         dimension += 2;

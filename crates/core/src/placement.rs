@@ -88,7 +88,7 @@ pub fn stop_drift<const D: usize>(particles: &mut Particles<D>) {
     let mass: f64 = particles.mass.iter().sum();
     let drift = particles.momentum() / mass;
     if drift.is_finite() {
-        particles.velocity.iter_mut().for_each(|v| *v = *v - drift);
+        particles.velocity.iter_mut().for_each(|v| *v -= drift);
     }
 }
 
@@ -102,9 +102,9 @@ mod tests {
             let room = Boundary::<2>::new([0.0; 2], [10.0; 2], walls);
             let places = lattice(&room, count, 0.5, &mut Random::new(1, 0), |_| true).unwrap();
             let mut particles = Particles::new();
-            places.iter().for_each(|&place| {
+            for place in places {
                 particles.push(place, Vector::ZERO, 1.0, 0.5, 0);
-            });
+            }
             assert_eq!(particles.len(), count);
             room.validate_particles(&particles).unwrap();
         }

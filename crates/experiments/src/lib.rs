@@ -1,1 +1,44 @@
-//! To be written.
+//! The experiments: each is one file that declares its parameters, sets the system up, says how to draw it, and checks
+//! what it measures against theory.
+//!
+//! To add one, write the file and name it in [`REGISTRY`].
+
+pub mod parameter;
+pub mod simulation;
+
+pub use parameter::{Kind, Parameter, Settings, Value};
+pub use simulation::{Action, Honesty, Simulation, Table};
+
+use corpuscle_core::Invalid;
+
+/// What the registry knows of an experiment before it runs.
+pub struct Experiment {
+    /// Name on the command line: lower case, words joined by hyphens.
+    pub name: &'static str,
+    /// Title.
+    pub title: &'static str,
+    /// What it shows, in one or two sentences.
+    pub summary: &'static str,
+    /// Dimensions it can run in.
+    pub dimensions: &'static [usize],
+    /// Engines it runs on.
+    pub engines: &'static [&'static str],
+    /// Its parameters, in the order in which they are shown.
+    pub parameters: &'static [Parameter],
+    /// Starts it.
+    pub start: fn(&Settings) -> Result<Box<dyn Simulation>, Invalid>,
+}
+
+/// All experiments, in the order in which they are listed.
+pub static REGISTRY: &[&Experiment] = &[];
+
+/// The experiment of this name.
+///
+/// # Errors
+/// Names the experiments there are.
+pub fn find(name: &str) -> Result<&'static Experiment, Invalid> {
+    REGISTRY.iter().copied().find(|experiment| experiment.name == name).ok_or_else(|| {
+        let names: Vec<&str> = REGISTRY.iter().map(|experiment| experiment.name).collect();
+        Invalid::new("experiment", name, format!("one of {}", names.join(", ")))
+    })
+}
