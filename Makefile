@@ -1,0 +1,36 @@
+# Two commands do everything on a fresh Debian or Ubuntu machine that has Rust:
+#   make run    install what is missing, build, run the five experiments
+#   make test   the same, then every test
+.DEFAULT_GOAL := help
+.PHONY: help run test lint bench setup setup-test clean
+
+CARGO ?= cargo
+OUT   ?= results
+
+help: ## Show what there is to make
+	@awk -F':.*## ' '/^[a-z-]+:.*## /{printf "  make %-8s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+
+run: setup ## Build, run the five experiments, leave a report of each under results/
+	$(CARGO) build --release --locked
+	@scripts/run-all.sh target/release/corpuscle $(OUT)
+
+test: setup-test ## Every test: units, physics against theory, pictures, the command
+	$(CARGO) test --release --locked --workspace
+	@scripts/check-rooms.sh
+
+lint: ## Format and house rules
+	$(CARGO) fmt --all --check
+	$(CARGO) clippy --release --locked --workspace --all-targets -- -D warnings
+
+bench: setup ## Time every kernel
+	$(CARGO) bench --locked --workspace --benches
+
+setup:
+	@scripts/setup.sh run
+
+setup-test:
+	@scripts/setup.sh test
+
+clean: ## Remove what was built and what was run
+	$(CARGO) clean
+	rm -rf results
