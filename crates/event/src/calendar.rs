@@ -1,0 +1,271 @@
+//! Which particle's event comes next: a calendar queue with one entry a particle.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+const NONE: u32 = u32::MAX;
+/// The event is due today and lies in the heap.
+const TODAY: u32 = u32::MAX - 1;
+
+/// A bounded-increasing priority queue (Paul, J. Comput. Phys. 221, 615 (2007), doi:10.1016/j.jcp.2006.06.042).
+///
+/// Time is cut into days of equal width. The events of each of the coming `2^n` days form an unsorted list, threaded
+/// through the particles; only those of today are ordered, in a heap of a few entries. Events beyond the last day wait
+/// in one list that is sorted into days once a year of `2^n` days. Every operation is `O(1)` and allocates nothing.
+/// Events at the same time come in the order of their particles, so the sequence of events depends on no detail
+/// of the queue.
+#[derive(Clone, Debug)]
+pub(crate) struct Calendar {
+    entries: Vec<Entry>,
+    /// First particle of each day's list, then of the list of far events.
+    heads: Vec<u32>,
+    /// Today's events by `(bits of the time, particle)`; the bits of non-negative numbers sort like the numbers.
+    /// An entry whose particle has been rescheduled stays, and is dropped when it comes up.
+    heap: BinaryHeap<Reverse<(u64, u32)>>,
+    days_per_time: f64,
+    today: u64,
+    year_end: u64,
+    /// How many events lie in lists of days, and how many beyond them.
+    near: usize,
+    far: usize,
+    /// Events taken since the days were last fitted, and the day it was.
+    taken: u64,
+    fitted: u64,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    time: f64,
+    next: u32,
+    previous: u32,
+    list: u32,
+}
+
+impl Calendar {
+    /// An empty calendar for this many particles.
+    pub(crate) fn new(particles: usize) -> Self {
+        let days = (4 * particles).next_power_of_two().clamp(64, 1 << 30);
+        Self {
+            entries: vec![Entry { time: f64::INFINITY, next: NONE, previous: NONE, list: NONE }; particles],
+            heads: vec![NONE; days + 1],
+            heap: BinaryHeap::new(),
+            days_per_time: 1.0,
+            today: 0,
+            year_end: days as u64,
+            near: 0,
+            far: 0,
+            taken: 0,
+            fitted: 0,
+        }
+    }
+
+    /// Replaces all entries, and fits the width of the days to them: one event a day on average.
+    pub(crate) fn fill(&mut self, now: f64, times: impl Iterator<Item = f64>) {
+        for (entry, time) in self.entries.iter_mut().zip(times) {
+            entry.time = time + 0.0;
+        }
+        self.fit(now);
+    }
+
+    fn fit(&mut self, now: f64) {
+        // Waiting times are nearly exponential: their median is ln 2 of the mean.
+        let mut waits: Vec<f64> = self.entries.iter().map(|e| e.time - now).filter(|wait| wait.is_finite() && *wait > 0.0).collect();
+        if !waits.is_empty() {
+            let (middle, count) = (waits.len() / 2, waits.len() as f64);
+            let median = *waits.select_nth_unstable_by(middle, f64::total_cmp).1;
+            self.days_per_time = (count * std::f64::consts::LN_2 / median).clamp(1e-300, 1e300);
+        }
+        self.heap.clear();
+        self.heads.fill(NONE);
+        (self.near, self.far, self.taken) = (0, 0, 0);
+        self.today = self.day_of(now);
+        self.fitted = self.today;
+        self.year_end = self.today.saturating_add(self.days());
+        for i in 0..self.entries.len() {
+            self.entries[i].list = NONE;
+            self.place(i as u32);
+        }
+    }
+
+    /// Sets the time of a particle's next event; infinity for none.
+    #[inline]
+    pub(crate) fn schedule(&mut self, i: u32, time: f64) {
+        self.unlink(i);
+        // Adding zero turns a negative zero, which would sort last, into a positive one.
+        self.entries[i as usize].time = time + 0.0;
+        self.place(i);
+    }
+
+    /// Takes the earliest event if it is not later than `until`.
+    #[inline]
+    pub(crate) fn take(&mut self, until: f64) -> Option<(f64, u32)> {
+        loop {
+            while let Some(&Reverse((bits, i))) = self.heap.peek() {
+                let (time, entry) = (f64::from_bits(bits), &mut self.entries[i as usize]);
+                if entry.list == TODAY && entry.time == time {
+                    if time > until {
+                        return None;
+                    }
+                    entry.list = NONE;
+                    self.heap.pop();
+                    self.taken += 1;
+                    return Some((time, i));
+                }
+                self.heap.pop();
+            }
+            if self.near + self.far == 0 || self.today >= self.day_of(until) {
+                return None;
+            }
+            self.turn_the_page();
+        }
+    }
+
+    fn turn_the_page(&mut self) {
+        self.today = if self.near == 0 { self.year_end } else { self.today + 1 };
+        if self.today >= self.year_end {
+            self.begin_year();
+        }
+        let slot = (self.today & (self.days() - 1)) as usize;
+        let mut i = std::mem::replace(&mut self.heads[slot], NONE);
+        while i != NONE {
+            let entry = &mut self.entries[i as usize];
+            entry.list = TODAY;
+            self.heap.push(Reverse((entry.time.to_bits(), i)));
+            self.near -= 1;
+            i = entry.next;
+        }
+    }
+
+    /// Every far event lies at or beyond the end of the last year: those of the new year go to their days.
+    fn begin_year(&mut self) {
+        let days = self.today - self.fitted;
+        if self.taken > 4 * days || (4 * self.taken < days && days > 4 * self.entries.len() as u64) {
+            // Today is empty, and nothing is earlier.
+            self.fit(self.today as f64 / self.days_per_time);
+            return;
+        }
+        let last = self.heads.len() - 1;
+        let mut i = std::mem::replace(&mut self.heads[last], NONE);
+        if self.near == 0 {
+            // Nothing in between: straight on to the first far event.
+            let mut first = f64::INFINITY;
+            let mut j = i;
+            while j != NONE {
+                first = first.min(self.entries[j as usize].time);
+                j = self.entries[j as usize].next;
+            }
+            self.today = self.today.max(self.day_of(first));
+        }
+        self.year_end = self.today.saturating_add(self.days());
+        self.far = 0;
+        while i != NONE {
+            let next = self.entries[i as usize].next;
+            self.place(i);
+            i = next;
+        }
+    }
+
+    #[inline]
+    fn days(&self) -> u64 {
+        self.heads.len() as u64 - 1
+    }
+
+    #[inline]
+    fn day_of(&self, time: f64) -> u64 {
+        (time * self.days_per_time) as u64
+    }
+
+    #[inline]
+    fn place(&mut self, i: u32) {
+        let time = self.entries[i as usize].time;
+        if time == f64::INFINITY {
+            self.entries[i as usize].list = NONE;
+            return;
+        }
+        let day = self.day_of(time);
+        if day <= self.today {
+            self.entries[i as usize].list = TODAY;
+            self.heap.push(Reverse((time.to_bits(), i)));
+            return;
+        }
+        let list = if day - self.today < self.days() {
+            self.near += 1;
+            (day & (self.days() - 1)) as usize
+        } else {
+            self.far += 1;
+            self.heads.len() - 1
+        };
+        let next = std::mem::replace(&mut self.heads[list], i);
+        if next != NONE {
+            self.entries[next as usize].previous = i;
+        }
+        let entry = &mut self.entries[i as usize];
+        (entry.list, entry.next, entry.previous) = (list as u32, next, NONE);
+    }
+
+    #[inline]
+    fn unlink(&mut self, i: u32) {
+        let Entry { next, previous, list, .. } = self.entries[i as usize];
+        if list >= TODAY {
+            self.entries[i as usize].list = NONE;
+            return;
+        }
+        if next != NONE {
+            self.entries[next as usize].previous = previous;
+        }
+        if previous == NONE {
+            self.heads[list as usize] = next;
+        } else {
+            self.entries[previous as usize].next = next;
+        }
+        if list as usize == self.heads.len() - 1 {
+            self.far -= 1;
+        } else {
+            self.near -= 1;
+        }
+        self.entries[i as usize].list = NONE;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use corpuscle_core::Random;
+
+    /// Against a plain search through all entries, with waits over twelve orders of magnitude, ties and infinities.
+    #[test]
+    fn events_come_in_order_whatever_their_spacing() {
+        let mut random = Random::new(1, 0);
+        for n in [1usize, 2, 7, 100] {
+            let mut draw = |now: f64| match random.below(8) {
+                0 => f64::INFINITY,
+                1 => now,
+                2 => now.ceil(),
+                3 => now + 1e6 * random.uniform(),
+                4 => now + 1e-6 * random.uniform(),
+                _ => now + random.uniform(),
+            };
+            let mut times: Vec<f64> = (0..n).map(|_| draw(0.0)).collect();
+            let mut calendar = Calendar::new(n);
+            calendar.fill(0.0, times.iter().copied());
+            let mut now = 0.0;
+            for step in 0..20_000 {
+                let until = if step % 3 == 0 { now + 0.01 } else { f64::MAX };
+                let first = (0..n).min_by(|&a, &b| times[a].total_cmp(&times[b])).unwrap();
+                let expected = (times[first] <= until).then_some((times[first], first as u32));
+                assert_eq!(calendar.take(until), expected, "step {step} of {n} particles");
+                now = if expected.is_some() { times[first] } else { now };
+                for i in [first, step % n] {
+                    if i != first || expected.is_some() {
+                        times[i] = draw(now);
+                        calendar.schedule(i as u32, times[i]);
+                    }
+                }
+                if times.iter().all(|t| t.is_infinite()) {
+                    times[0] = now + 1.0;
+                    calendar.schedule(0, times[0]);
+                }
+            }
+        }
+    }
+}

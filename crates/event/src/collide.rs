@@ -1,0 +1,95 @@
+//! Contacts: impulses and what is planned afterwards.
+
+use corpuscle_core::{Contact, Meeting, Party};
+
+use crate::engine::EventDriven;
+
+impl<const D: usize> EventDriven<D> {
+    /// Two particles touch, the second in a periodic image: each gets the impulse `J = (1 + e) mu |v.k|`, with the unit
+    /// normal `k` and the reduced mass `mu = m1 m2 / (m1 + m2)`.
+    ///
+    /// The partner of lower index is the first, so the result does not depend on whose event it was.
+    #[inline]
+    pub(crate) fn collide<const FIELD: bool>(&mut self, i: usize, j: usize, image: [i8; D]) -> Contact<D> {
+        let shift = self.grid.shift(image);
+        let (i, j, shift) = if i < j { (i, j, shift) } else { (j, i, -shift) };
+        self.counts.collisions += 1;
+        self.count_stuck(i);
+        self.count_stuck(j);
+        self.settle(i);
+        self.settle(j);
+        let (m1, m2) = (self.bodies[i].mass, self.bodies[j].mass);
+        let (v1, v2) = (self.flights[i].velocity, self.flights[j].velocity);
+        let r = self.flights[j].position - self.flights[i].position + shift;
+        let distance = r.norm();
+        let k = r / distance;
+        let approach = -(v2 - v1).dot(k);
+        let mu = m1 * m2 / (m1 + m2);
+        let impulse = ((1.0 + self.rules.restitution_at(approach)) * mu * approach).max(0.0);
+        self.flights[i].velocity = v1 - k * (impulse / m1);
+        self.flights[j].velocity = v2 + k * (impulse / m2);
+        self.stamp(i);
+        self.stamp(j);
+        let contact = Contact {
+            time: self.epoch + self.now,
+            first: self.party(i, v1),
+            with: Meeting::Pair(self.party(j, v2)),
+            normal: k,
+            impulse,
+            distance,
+        };
+        self.plan_and_schedule::<FIELD>(i);
+        self.plan_and_schedule::<FIELD>(j);
+        contact
+    }
+
+    /// A particle touches a fixed surface: `J = (1 + e) m |v.k|`.
+    pub(crate) fn bounce<const FIELD: bool>(&mut self, i: usize, number: usize) -> Contact<D> {
+        self.counts.wall_collisions += 1;
+        self.count_stuck(i);
+        self.settle(i);
+        let surface = &self.surfaces[number];
+        surface.align(&mut self.flights[i]);
+        let (k, distance) = surface.normal(self.flights[i].position);
+        let with = surface.meeting;
+        let before = self.flights[i].velocity;
+        let approach = before.dot(k);
+        let mass = self.bodies[i].mass;
+        let change = ((1.0 + self.rules.restitution_at(approach)) * approach).max(0.0);
+        self.flights[i].velocity = before - k * change;
+        self.stamp(i);
+        let contact = Contact {
+            time: self.epoch + self.now,
+            first: self.party(i, before),
+            with,
+            normal: k,
+            impulse: mass * change,
+            distance,
+        };
+        self.plan_and_schedule::<FIELD>(i);
+        contact
+    }
+
+    #[inline]
+    fn stamp(&mut self, i: usize) {
+        self.plans[i].stamp = self.plans[i].stamp.wrapping_add(1);
+    }
+
+    #[inline]
+    fn plan_and_schedule<const FIELD: bool>(&mut self, i: usize) {
+        self.plan::<FIELD>(i);
+        self.calendar.schedule(i as u32, self.plans[i].next_time());
+    }
+
+    /// Counts contacts at the same instant: in an inelastic collapse the clock stops.
+    #[inline]
+    fn count_stuck(&mut self, i: usize) {
+        self.plans[i].stuck = if self.flights[i].time == self.now { self.plans[i].stuck + 1 } else { 0 };
+    }
+
+    #[inline]
+    fn party(&self, index: usize, before: corpuscle_core::Vector<D>) -> Party<D> {
+        let flight = &self.flights[index];
+        Party { index, mass: self.bodies[index].mass, position: flight.position, before, after: flight.velocity }
+    }
+}

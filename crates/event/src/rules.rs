@@ -1,0 +1,76 @@
+//! What an event-driven run is told besides its box, and what it tells about its work.
+
+use corpuscle_core::{Invalid, Vector};
+
+/// The law of contact and the field in which particles fly.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rules<const D: usize> {
+    /// Coefficient of restitution `e` in `[0, 1]`: the normal relative speed after a contact is `e` times that before.
+    /// 1 is elastic. Walls, partitions and particles alike.
+    pub restitution: f64,
+    /// Contacts that approach more slowly than this are elastic. Without such a rule inelastic spheres may collide
+    /// infinitely often in a finite time (McNamara and Young, Phys. Fluids A 4, 496 (1992), doi:10.1063/1.858323).
+    pub elastic_below: f64,
+    /// Acceleration `g` of every particle, the same everywhere.
+    pub field: Vector<D>,
+}
+
+impl<const D: usize> Default for Rules<D> {
+    /// Elastic contacts, no field.
+    fn default() -> Self {
+        Self { restitution: 1.0, elastic_below: 0.0, field: Vector::ZERO }
+    }
+}
+
+impl<const D: usize> Rules<D> {
+    /// Checks that every number makes sense.
+    ///
+    /// # Errors
+    /// Names the first that does not.
+    pub fn validate(&self) -> Result<(), Invalid> {
+        if !(0.0..=1.0).contains(&self.restitution) {
+            return Err(Invalid::new("restitution", self.restitution, "a number from 0 to 1"));
+        }
+        if !(self.elastic_below >= 0.0 && self.elastic_below.is_finite()) {
+            return Err(Invalid::new("elastic_below", self.elastic_below, "a speed, zero or more"));
+        }
+        if !self.field.is_finite() {
+            return Err(Invalid::new("field", format!("{:?}", self.field.0), "finite numbers"));
+        }
+        Ok(())
+    }
+
+    /// Restitution of a contact approached at this normal speed.
+    #[inline]
+    pub(crate) fn restitution_at(&self, speed: f64) -> f64 {
+        if speed < self.elastic_below { 1.0 } else { self.restitution }
+    }
+}
+
+/// What an engine has done so far: physics first, then the work it cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Collisions between two particles.
+    pub collisions: u64,
+    /// Contacts with walls, partitions and rims.
+    pub wall_collisions: u64,
+    /// Passages from cell to cell.
+    pub crossings: u64,
+    /// Events found obsolete when their time came, because the partner had collided meanwhile.
+    pub stale: u64,
+    /// Searches of a particle's whole neighbourhood for its next collision.
+    pub predictions: u64,
+}
+
+/// A particle as the engine keeps it: where it was at its own time.
+///
+/// At another time `t` it is at `position + velocity (t - time) + field (t - time)^2 / 2`, until its next event.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lazy<const D: usize> {
+    /// Position of the centre at `time`.
+    pub position: Vector<D>,
+    /// Velocity at `time`.
+    pub velocity: Vector<D>,
+    /// The particle's own physical time.
+    pub time: f64,
+}
