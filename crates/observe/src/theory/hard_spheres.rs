@@ -1,0 +1,139 @@
+//! Hard disks and spheres of one size: structure, pressure and collisions. All but the kinetic relations are defined in two
+//! and three dimensions only; other dimensions do not compile.
+
+use std::f64::consts::PI;
+
+use corpuscle_core::particles::ball_volume;
+
+/// Packing fraction `eta = n v` of particles of this diameter at number density `n`: `n pi s^2/4` or `n pi s^3/6`.
+pub fn packing_fraction<const D: usize>(density: f64, diameter: f64) -> f64 {
+    density * ball_volume::<D>(0.5 * diameter)
+}
+
+/// Radial distribution at contact, `chi = g(s+)`, in the fluid.
+///
+/// 2-D: `(1 - 7 eta/16) / (1 - eta)^2`, 3-D: `(1 - eta/2) / (1 - eta)^3`: what the virial theorem makes of the equations
+/// of state of [`compressibility`]. Good to about a per cent below freezing, `eta = 0.70` and `0.494`; no meaning above.
+pub fn contact_value<const D: usize>(packing: f64) -> f64 {
+    let free = 1.0 - packing;
+    match const { two_or_three::<D>() } {
+        2 => (1.0 - 7.0 * packing / 16.0) / (free * free),
+        _ => (1.0 - 0.5 * packing) / (free * free * free),
+    }
+}
+
+/// Compressibility factor `Z = P V / (N k T)` of the fluid.
+///
+/// 2-D: `(1 + eta^2/8) / (1 - eta)^2` (Henderson 1975, doi:10.1080/00268977500102511). 3-D:
+/// `(1 + eta + eta^2 - eta^3) / (1 - eta)^3` (Carnahan and Starling 1969, doi:10.1063/1.1672048). The second virial
+/// coefficient is exact in both; good to about a per cent below freezing.
+pub fn compressibility<const D: usize>(packing: f64) -> f64 {
+    let (eta, free) = (packing, 1.0 - packing);
+    match const { two_or_three::<D>() } {
+        2 => (1.0 + eta * eta / 8.0) / (free * free),
+        _ => (1.0 + eta + eta * eta - eta * eta * eta) / (free * free * free),
+    }
+}
+
+/// Collisions a particle suffers per time in a gas of one species, Enskog: `2 n s chi sqrt(pi kT/m)` in 2-D,
+/// `4 n s^2 chi sqrt(pi kT/m)` in 3-D (Chapman and Cowling, The Mathematical Theory of Non-uniform Gases, chapter 16).
+/// It is exact in equilibrium, given the true contact value.
+pub fn collision_rate<const D: usize>(density: f64, diameter: f64, temperature: f64, mass: f64) -> f64 {
+    let chi = contact_value::<D>(packing_fraction::<D>(density, diameter));
+    let speed = (PI * temperature / mass).sqrt();
+    match const { two_or_three::<D>() } {
+        2 => 2.0 * density * diameter * chi * speed,
+        _ => 4.0 * density * diameter * diameter * chi * speed,
+    }
+}
+
+/// Mean free path, the mean speed over the collision rate: `1/(2 sqrt2 n s chi)` in 2-D, `1/(sqrt2 pi n s^2 chi)` in 3-D.
+pub fn mean_free_path<const D: usize>(density: f64, diameter: f64) -> f64 {
+    mean_speed::<D>(1.0, 1.0) / collision_rate::<D>(density, diameter, 1.0, 1.0)
+}
+
+/// Mean speed in equilibrium: `sqrt(pi kT/(2m))` in 2-D, `sqrt(8 kT/(pi m))` in 3-D.
+pub fn mean_speed<const D: usize>(temperature: f64, mass: f64) -> f64 {
+    match const { two_or_three::<D>() } {
+        2 => (0.5 * PI * temperature / mass).sqrt(),
+        _ => (8.0 * temperature / (PI * mass)).sqrt(),
+    }
+}
+
+/// Hits per area and time on a wall, or passages through a hole, of a gas of number density `n` at the wall:
+/// `n sqrt(kT/(2 pi m))`, in any dimension. For hard spheres the density of centres at the wall is `P/(kT)`.
+pub fn wall_hit_rate(density: f64, temperature: f64, mass: f64) -> f64 {
+    density * (temperature / (2.0 * PI * mass)).sqrt()
+}
+
+/// Mean of the velocity component through the hole of those that pass it: `sqrt(pi kT/(2m))`.
+pub fn speed_through_hole(temperature: f64, mass: f64) -> f64 {
+    (0.5 * PI * temperature / mass).sqrt()
+}
+
+const fn two_or_three<const D: usize>() -> usize {
+    assert!(D == 2 || D == 3, "known in two and three dimensions only");
+    D
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The virial theorem with the mean impulse of a contact: `Z = 1 + 2^(D-1) eta chi`.
+    #[test]
+    fn pressure_and_contact_value_fulfil_the_virial_theorem() {
+        for eta in [0.0, 0.1, 0.3, 0.45] {
+            assert!((compressibility::<3>(eta) - 1.0 - 4.0 * eta * contact_value::<3>(eta)).abs() < 1e-13);
+            assert!((compressibility::<2>(eta) - 1.0 - 2.0 * eta * contact_value::<2>(eta)).abs() < 1e-13);
+        }
+    }
+
+    /// Virial coefficients known exactly: `Z = 1 + 2 eta + 3.128 eta^2` in 2-D (`B_3/B_2^2 = 4/3 - sqrt3/pi`), and
+    /// `1 + 4 eta + 10 eta^2` in 3-D. Both equations of state round the third in 2-D (to 3.125).
+    #[test]
+    fn low_densities_have_the_exact_virial_coefficients() {
+        let eta = 1e-4;
+        let second = |z: f64| (z - 1.0) / eta;
+        let exact = 4.0 * (4.0 / 3.0 - 3f64.sqrt() / PI);
+        assert!((second(compressibility::<2>(eta)) - 2.0 - 3.125 * eta).abs() < 1e-7 && (exact - 3.125).abs() < 0.004);
+        assert!((second(compressibility::<3>(eta)) - 4.0 - 10.0 * eta).abs() < 1e-6);
+    }
+
+    /// The rate of collisions from the flux of relative velocities: `n chi` times the cross-section (`2 s`, `pi s^2`) times the
+    /// mean relative speed, which is `sqrt2` times the mean speed.
+    #[test]
+    fn collision_rate_is_density_times_cross_section_times_relative_speed() {
+        let (n, s, t, m) = (0.2, 1.1, 1.7, 0.6);
+        let flat = n * contact_value::<2>(n * PI * s * s / 4.0) * 2.0 * s * 2f64.sqrt() * mean_speed::<2>(t, m);
+        let round = n * contact_value::<3>(n * PI * s * s * s / 6.0) * PI * s * s * 2f64.sqrt() * mean_speed::<3>(t, m);
+        assert!((collision_rate::<2>(n, s, t, m) / flat - 1.0).abs() < 1e-14);
+        assert!((collision_rate::<3>(n, s, t, m) / round - 1.0).abs() < 1e-14);
+    }
+
+    /// The collisions' own virial: each transfers `s m |v.k|` on average `s sqrt(pi m kT)`, so that
+    /// `Z - 1 = (rate/2) s sqrt(pi m kT) / (D kT)`: an independent road from the rate to the pressure.
+    #[test]
+    fn collision_rate_and_pressure_belong_together() {
+        let (n, s, t, m) = (0.3, 1.0, 1.3, 2.0);
+        let virial = |rate: f64, d: f64| 0.5 * rate * s * (PI * m * t).sqrt() / (d * t);
+        let z2 = compressibility::<2>(packing_fraction::<2>(n, s)) - 1.0;
+        let z3 = compressibility::<3>(packing_fraction::<3>(n, s)) - 1.0;
+        assert!((virial(collision_rate::<2>(n, s, t, m), 2.0) / z2 - 1.0).abs() < 1e-13);
+        assert!((virial(collision_rate::<3>(n, s, t, m), 3.0) / z3 - 1.0).abs() < 1e-13);
+    }
+
+    #[test]
+    fn pressure_is_the_wall_hit_rate_times_the_mean_impulse() {
+        let (n, t, m) = (0.7, 1.9, 0.4);
+        assert!((wall_hit_rate(n, t, m) * 2.0 * m * speed_through_hole(t, m) / (n * t) - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn mean_free_paths_are_the_textbook_ones() {
+        let (n, s) = (0.05, 1.0);
+        let flat = 1.0 / (2.0 * 2f64.sqrt() * n * s * contact_value::<2>(packing_fraction::<2>(n, s)));
+        let round = 1.0 / (2f64.sqrt() * PI * n * s * s * contact_value::<3>(packing_fraction::<3>(n, s)));
+        assert!((mean_free_path::<2>(n, s) / flat - 1.0).abs() < 1e-14 && (mean_free_path::<3>(n, s) / round - 1.0).abs() < 1e-14);
+    }
+}
