@@ -1,1 +1,37 @@
-//! To be written.
+//! The time-driven engine: soft particles, few bodies and springs, in any dimension from one code.
+//!
+//! A system is a [`Boundary`](corpuscle_core::Boundary), [`Particles`](corpuscle_core::Particles), a list of [`Force`]s
+//! and an [`Integrator`]; [`TimeDriven`] advances it in steps of time. A new force is one file with its acceleration and
+//! its energy; a new short-range potential ([`PairPotential`]) gets neighbour lists, the virial and the checks for free.
+//!
+//! ```
+//! use corpuscle_core::{Axis, Boundary, Engine, Particles, Vector};
+//! use corpuscle_time::{Gravity, Integrator, TimeDriven};
+//!
+//! let mut bodies = Particles::<2>::new();
+//! bodies.push(Vector([0.0, 0.0]), Vector([0.0, 0.0]), 1.0, 0.0, 0);
+//! bodies.push(Vector([1.0, 0.0]), Vector([0.0, 1.0]), 0.0, 0.0, 1); // a massless planet
+//! let space = Boundary::new([-2.0; 2], [2.0; 2], Axis::Open);
+//! let orbit = Integrator::GaussRadau15 { tolerance: 1e-9, first_step: None };
+//! let mut engine = TimeDriven::new(space, bodies, vec![Box::new(Gravity::new(1.0, 0.0))], orbit)?;
+//! engine.advance(std::f64::consts::TAU, &mut ())?;
+//! assert!((engine.particles().position[1] - Vector([1.0, 0.0])).norm() < 1e-12); // one year later
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod constraint;
+mod engine;
+pub mod force;
+mod image;
+mod integrator;
+mod neighbours;
+mod system;
+
+pub use constraint::{Drive, Pin, Signal};
+pub use engine::TimeDriven;
+pub use force::{
+    Drag, DrivingForce, Force, Gravity, LennardJones, PairForce, PairPotential, Spring, Springs, UniformField,
+    WeeksChandlerAndersen,
+};
+pub use integrator::Integrator;
+pub use neighbours::Neighbours;

@@ -1,0 +1,305 @@
+//! The time-driven engine.
+
+use std::ops::ControlFlow;
+
+use corpuscle_core::{Axis, Boundary, Engine, Failure, Invalid, Observer, Particles, Vector};
+
+use crate::constraint::{Drive, Held, Pin};
+use crate::force::Force;
+use crate::integrator::{Integrator, Stepper};
+use crate::system::System;
+
+/// A caller's time may fall short of the end of a step by this share of it: the rounding of the caller's sums.
+const GUARD: f64 = 1e-6;
+/// A state is kept every so many steps; a failure is answered by going back to it and repeating the good steps.
+const KEPT_EVERY: u64 = 32;
+
+/// Particles under forces, advanced in steps of time.
+///
+/// With a fixed step `dt` the time is `steps * dt`: [`advance`](Engine::advance) takes every whole step that ends at or
+/// before the time asked for, never a part of one, and [`time`](Engine::time) is the end of the last. The adaptive
+/// integrator goes past the time asked for and reports the state in between from its polynomial. Either way the
+/// trajectory's bits do not depend on where callers stop.
+///
+/// The engine only follows forces: two fast particles with a hard, narrow potential can pass through each other within a
+/// step. Where that must not happen, use the event-driven engine.
+pub struct TimeDriven<const D: usize> {
+    system: System<D>,
+    integrator: Integrator,
+    stepper: Stepper<D>,
+    steps: u64,
+    time: f64,
+    kept: Kept<D>,
+}
+
+/// What is needed to repeat steps from.
+#[derive(Default)]
+struct Kept<const D: usize> {
+    steps: u64,
+    position: Vec<Vector<D>>,
+    velocity: Vec<Vector<D>>,
+    images: Vec<[i64; D]>,
+    acceleration: Vec<Vector<D>>,
+    fresh: bool,
+}
+
+impl<const D: usize> TimeDriven<D> {
+    /// A system at time zero. Positions outside a periodic box are wrapped into it.
+    ///
+    /// # Errors
+    /// Names what cannot be used: numbers, particles outside walls, a force that does not fit the box or the masses, a
+    /// box with partitions (the event-driven engine has them), hard walls with the adaptive integrator.
+    pub fn new(
+        boundary: Boundary<D>,
+        particles: Particles<D>,
+        forces: Vec<Box<dyn Force<D>>>,
+        integrator: Integrator,
+    ) -> Result<Self, Invalid> {
+        integrator.validate()?;
+        let system = System::new(boundary, particles, forces)?;
+        let mut engine = Self { system, integrator, stepper: integrator.stepper(), steps: 0, time: 0.0, kept: Kept::default() };
+        engine.restart()?;
+        Ok(engine)
+    }
+
+    /// Holds coordinates fixed.
+    ///
+    /// # Errors
+    /// When a pin names a particle that does not exist.
+    pub fn with_pins(mut self, pins: Vec<Pin<D>>) -> Result<Self, Invalid> {
+        for pin in pins {
+            for axis in (0..D).filter(|&axis| pin.axes[axis]) {
+                self.system.held.push(Held::new(pin.particle, axis, None, self.time, &self.system.particles)?);
+            }
+        }
+        self.restart()?;
+        Ok(self)
+    }
+
+    /// Moves coordinates as prescribed.
+    ///
+    /// # Errors
+    /// When a drive names a particle or an axis that does not exist, a periodic axis, or a signal that makes no sense.
+    pub fn with_drives(mut self, drives: Vec<Drive>) -> Result<Self, Invalid> {
+        for drive in drives {
+            if drive.axis < D && self.system.boundary.axes[drive.axis] == Axis::Periodic {
+                return Err(Invalid::new("drive along axis", drive.axis, "an axis that is not periodic"));
+            }
+            let signal = Some(drive.signal);
+            self.system.held.push(Held::new(drive.particle, drive.axis, signal, self.time, &self.system.particles)?);
+        }
+        self.restart()?;
+        Ok(self)
+    }
+
+    /// The particles at [`time`](Engine::time), wrapped into the box along periodic axes.
+    pub fn particles(&self) -> &Particles<D> {
+        &self.system.particles
+    }
+
+    /// The box.
+    pub fn boundary(&self) -> &Boundary<D> {
+        &self.system.boundary
+    }
+
+    /// Steps taken, of whatever length.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// The integrator.
+    pub fn integrator(&self) -> Integrator {
+        self.integrator
+    }
+
+    /// Kinetic energy `sum m v^2 / 2`.
+    pub fn kinetic_energy(&self) -> f64 {
+        self.system.particles.kinetic_energy()
+    }
+
+    /// Potential energy of all forces.
+    pub fn potential_energy(&self) -> f64 {
+        self.energies().iter().map(|(_, energy)| energy).sum()
+    }
+
+    /// Potential energy of each force, with its name, in the order the forces were given.
+    pub fn energies(&self) -> Vec<(&'static str, f64)> {
+        let System { boundary, particles, forces, .. } = &self.system;
+        forces.iter().map(|force| (force.name(), force.energy(self.time, boundary, particles))).collect()
+    }
+
+    /// Kinetic plus potential energy.
+    pub fn energy(&self) -> f64 {
+        self.kinetic_energy() + self.potential_energy()
+    }
+
+    /// Total momentum.
+    pub fn momentum(&self) -> Vector<D> {
+        self.system.particles.momentum()
+    }
+
+    /// Total angular momentum about the origin; a planar system fills the last component.
+    pub fn angular_momentum(&self) -> [f64; 3] {
+        self.system.particles.angular_momentum()
+    }
+
+    /// Virial `W = sum over pairs of r_ij . F_ij` of the forces between particles: `P V = (2 E_kin + W) / D`.
+    pub fn virial(&self) -> f64 {
+        let System { boundary, particles, forces, .. } = &self.system;
+        forces.iter().map(|force| force.virial(self.time, boundary, particles)).sum()
+    }
+
+    /// How often particle `i` went through the upper minus the lower
+    /// face of each periodic axis.
+    pub fn images(&self, i: usize) -> [i64; D] {
+        self.system.images[i]
+    }
+
+    /// Position of particle `i` on its continuous path through the periodic images.
+    pub fn unwrapped(&self, i: usize) -> Vector<D> {
+        self.system.unwrapped(i)
+    }
+
+    /// Changes particles between steps: reverses velocities, perturbs, adds or removes some. Held coordinates are held
+    /// where the change put them.
+    ///
+    /// # Errors
+    /// When the result cannot be used; nothing is then changed.
+    pub fn edit(&mut self, change: impl FnOnce(&mut Particles<D>)) -> Result<(), Invalid> {
+        let (particles, images, held) = (self.system.particles.clone(), self.system.images.clone(), self.system.held.clone());
+        change(&mut self.system.particles);
+        let result = self.system.admit();
+        if result.is_ok() {
+            for held in &mut self.system.held {
+                held.settle(self.time, &self.system.particles);
+            }
+            return self.restart();
+        }
+        (self.system.particles, self.system.images, self.system.held) = (particles, images, held);
+        self.system.admit()?;
+        result
+    }
+
+    /// Replaces the box: removes a wall, moves one away.
+    ///
+    /// # Errors
+    /// When the particles or forces do not fit the new box; nothing is then changed.
+    pub fn set_boundary(&mut self, boundary: Boundary<D>) -> Result<(), Invalid> {
+        let before = std::mem::replace(&mut self.system.boundary, boundary);
+        let (position, images) = (self.system.particles.position.clone(), self.system.images.clone());
+        let result = self.system.admit().and_then(|()| self.restart());
+        if result.is_err() {
+            self.system.boundary = before;
+            (self.system.particles.position, self.system.images) = (position, images);
+            self.restart()?;
+        }
+        result
+    }
+
+    /// Makes the present state the one to go on from.
+    fn restart(&mut self) -> Result<(), Invalid> {
+        self.system.fresh = false;
+        self.system.hold(self.time);
+        if let Stepper::GaussRadau(method) = &mut self.stepper {
+            if self.system.boundary.axes.contains(&Axis::Walls) {
+                return Err(Invalid::new(
+                    "integrator",
+                    self.integrator.name(),
+                    "a fixed-step one where there are hard walls: a reflection is not smooth",
+                ));
+            }
+            method.restart(&self.system, self.time);
+        }
+        self.keep();
+        Ok(())
+    }
+
+    fn keep(&mut self) {
+        let System { particles, images, acceleration, fresh, .. } = &self.system;
+        self.kept.steps = self.steps;
+        self.kept.position.clone_from(&particles.position);
+        self.kept.velocity.clone_from(&particles.velocity);
+        self.kept.images.clone_from(images);
+        self.kept.acceleration.clone_from(acceleration);
+        self.kept.fresh = *fresh;
+    }
+
+    fn restore(&mut self) {
+        let System { particles, images, acceleration, fresh, .. } = &mut self.system;
+        self.steps = self.kept.steps;
+        particles.position.clone_from(&self.kept.position);
+        particles.velocity.clone_from(&self.kept.velocity);
+        images.clone_from(&self.kept.images);
+        acceleration.clone_from(&self.kept.acceleration);
+        *fresh = self.kept.fresh;
+    }
+
+    /// Every whole step of length `dt` up to `to`.
+    fn advance_fixed<O: Observer<D>>(&mut self, dt: f64, to: f64, observer: &mut O) -> Result<(), Failure> {
+        let last = (to / dt + GUARD).floor();
+        while (self.steps as f64) < last {
+            if self.steps.is_multiple_of(KEPT_EVERY) {
+                self.keep();
+            }
+            if let Err(failure) = self.step_fixed(dt) {
+                let good = self.steps;
+                self.restore();
+                while self.steps < good {
+                    self.step_fixed(dt)?;
+                }
+                self.system.contacts.clear();
+                return Err(failure);
+            }
+            let mut flow = ControlFlow::Continue(());
+            for contact in self.system.contacts.drain(..) {
+                if observer.contact(&contact).is_break() {
+                    flow = ControlFlow::Break(());
+                }
+            }
+            if flow.is_break() {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    fn step_fixed(&mut self, dt: f64) -> Result<(), Failure> {
+        let (start, end) = (self.steps as f64 * dt, (self.steps + 1) as f64 * dt);
+        self.stepper.step(&mut self.system, start, end, dt)?;
+        if let Some(i) = self.system.first_lost() {
+            let cause = "position or velocity is no longer a number: a force overflowed; use a smaller dt".to_owned();
+            return Err(Failure { time: end, particle: Some(i), cause });
+        }
+        self.steps += 1;
+        self.time = end;
+        Ok(())
+    }
+}
+
+impl<const D: usize> Engine<D> for TimeDriven<D> {
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn advance<O: Observer<D>>(&mut self, to: f64, observer: &mut O) -> Result<(), Failure> {
+        let Stepper::GaussRadau(method) = &mut self.stepper else {
+            let dt = self.integrator.dt().unwrap_or(f64::INFINITY);
+            return self.advance_fixed(dt, to, observer);
+        };
+        if to <= self.time {
+            return Ok(());
+        }
+        let mut outcome = Ok(());
+        while method.reached() < to && outcome.is_ok() {
+            outcome = method.step(&mut self.system);
+            self.steps += u64::from(outcome.is_ok());
+        }
+        self.time = to.min(method.reached());
+        method.interpolate(&mut self.system, self.time);
+        outcome
+    }
+
+    fn snapshot_into(&self, particles: &mut Particles<D>) {
+        particles.clone_from(&self.system.particles);
+    }
+}

@@ -1,0 +1,82 @@
+//! Forces, one file each.
+
+mod drag;
+mod drive;
+mod gravity;
+mod lennard_jones;
+mod pair;
+mod spring;
+mod uniform;
+mod wca;
+
+pub use drag::Drag;
+pub use drive::DrivingForce;
+pub use gravity::Gravity;
+pub use lennard_jones::LennardJones;
+pub use pair::{PairForce, PairPotential};
+pub use spring::{Spring, Springs};
+pub use uniform::UniformField;
+pub use wca::WeeksChandlerAndersen;
+
+use corpuscle_core::{Boundary, Invalid, Particles, Vector};
+
+/// Something that accelerates particles.
+///
+/// Accelerations are accumulated rather than forces, so that massless grains can feel a field. A force must be a pure
+/// function of time, positions and velocities: what it remembers between calls may only save work.
+pub trait Force<const D: usize>: Send {
+    /// Name, as a table of energies shows it.
+    fn name(&self) -> &'static str;
+
+    /// Adds the acceleration of every particle.
+    fn accelerate(&mut self, time: f64, boundary: &Boundary<D>, particles: &Particles<D>, acceleration: &mut [Vector<D>]);
+
+    /// Potential energy; zero for a force that has none.
+    fn energy(&self, time: f64, boundary: &Boundary<D>, particles: &Particles<D>) -> f64;
+
+    /// Virial `sum over pairs of r_ij . F_ij`; zero for a force from outside.
+    fn virial(&self, time: f64, boundary: &Boundary<D>, particles: &Particles<D>) -> f64;
+
+    /// Checks that the force makes sense for this box and these particles.
+    ///
+    /// # Errors
+    /// Names the parameter or particle at fault.
+    fn validate(&self, boundary: &Boundary<D>, particles: &Particles<D>) -> Result<(), Invalid>;
+
+    /// Whether the acceleration depends on velocities.
+    fn depends_on_velocity(&self) -> bool {
+        false
+    }
+
+    /// The longest step of an adaptive integrator that cannot miss what the force does by itself as time passes.
+    fn longest_step(&self) -> f64 {
+        f64::INFINITY
+    }
+}
+
+/// A parameter that must be a finite number.
+fn finite(key: &str, value: f64) -> Result<(), Invalid> {
+    if value.is_finite() { Ok(()) } else { Err(Invalid::new(key, value, "a finite number")) }
+}
+
+/// A parameter that must be positive.
+fn positive(key: &str, value: f64) -> Result<(), Invalid> {
+    if value.is_finite() && value > 0.0 { Ok(()) } else { Err(Invalid::new(key, value, "a positive number")) }
+}
+
+/// A parameter that must not be negative.
+fn not_negative(key: &str, value: f64) -> Result<(), Invalid> {
+    if value.is_finite() && value >= 0.0 { Ok(()) } else { Err(Invalid::new(key, value, "a number, zero or more")) }
+}
+
+/// A particle on which a force, not a field, acts: it must exist and have mass.
+fn massive<const D: usize>(force: &str, particle: usize, particles: &Particles<D>) -> Result<(), Invalid> {
+    match particles.mass.get(particle) {
+        None => Err(Invalid::new(format!("{force} at particle"), particle, format!("an index below {}", particles.len()))),
+        Some(mass) if *mass > 0.0 => Ok(()),
+        Some(mass) => Err(Invalid::new(format!("mass of particle {particle}"), mass, format!("a positive mass: {force} acts on it"))),
+    }
+}
+
+#[cfg(test)]
+mod tests;

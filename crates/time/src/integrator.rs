@@ -1,0 +1,173 @@
+//! How time passes: the integrators, by name.
+
+mod composition;
+mod gauss_radau;
+mod gauss_radau_table;
+mod runge_kutta;
+
+use corpuscle_core::{Failure, Invalid};
+
+use crate::system::System;
+use composition::Composition;
+pub(crate) use gauss_radau::GaussRadau;
+use runge_kutta::RungeKutta;
+
+/// A rule for advancing positions and velocities.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Integrator {
+    /// Euler's rule with the old velocity, order 1: `r += v dt`, `v += a dt`. Its energy grows; kept for comparison.
+    ExplicitEuler {
+        /// Time step.
+        dt: f64,
+    },
+    /// Euler's rule with the new velocity, order 1, symplectic: `v += a dt`, `r += v dt`.
+    SymplecticEuler {
+        /// Time step.
+        dt: f64,
+    },
+    /// Velocity Verlet, also called leapfrog: order 2, symplectic, reversible, one force evaluation a step.
+    VelocityVerlet {
+        /// Time step.
+        dt: f64,
+    },
+    /// The classical rule of Runge and Kutta, order 4, four evaluations; not symplectic.
+    RungeKutta4 {
+        /// Time step.
+        dt: f64,
+    },
+    /// Three velocity Verlet steps of Yoshida's lengths (1990, doi:10.1016/0375-9601(90)90092-3): order 4, symplectic,
+    /// reversible, three evaluations.
+    Yoshida4 {
+        /// Time step.
+        dt: f64,
+    },
+    /// Gauss-Radau collocation of order 15 that chooses its step (Everhart 1985, doi:10.1007/978-94-009-5400-7_17;
+    /// Rein and Spiegel 2015, doi:10.1093/mnras/stu2164). Needs smooth forces: hard walls are refused.
+    GaussRadau15 {
+        /// The share of the acceleration that the last term of its series may have; `1e-9` reaches rounding error.
+        tolerance: f64,
+        /// Length of the first step tried; chosen from the accelerations when absent.
+        first_step: Option<f64>,
+    },
+}
+
+impl Integrator {
+    /// Names of all integrators.
+    pub const NAMES: [&'static str; 6] =
+        ["explicit-euler", "symplectic-euler", "velocity-verlet", "runge-kutta-4", "yoshida-4", "gauss-radau-15"];
+
+    /// The integrator of that name. The adaptive one takes `dt` as the first step to try, and tolerance `1e-9`.
+    ///
+    /// # Errors
+    /// When there is no such name, or the step is not a positive number.
+    pub fn from_name(name: &str, dt: f64) -> Result<Self, Invalid> {
+        let integrator = match name {
+            "explicit-euler" => Self::ExplicitEuler { dt },
+            "symplectic-euler" => Self::SymplecticEuler { dt },
+            "velocity-verlet" => Self::VelocityVerlet { dt },
+            "runge-kutta-4" => Self::RungeKutta4 { dt },
+            "yoshida-4" => Self::Yoshida4 { dt },
+            "gauss-radau-15" => Self::GaussRadau15 { tolerance: 1e-9, first_step: Some(dt) },
+            _ => return Err(Invalid::new("integrator", name, format!("one of {}", Self::NAMES.join(", ")))),
+        };
+        integrator.validate()?;
+        Ok(integrator)
+    }
+
+    /// Name, as [`from_name`](Self::from_name) takes it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::ExplicitEuler { .. } => Self::NAMES[0],
+            Self::SymplecticEuler { .. } => Self::NAMES[1],
+            Self::VelocityVerlet { .. } => Self::NAMES[2],
+            Self::RungeKutta4 { .. } => Self::NAMES[3],
+            Self::Yoshida4 { .. } => Self::NAMES[4],
+            Self::GaussRadau15 { .. } => Self::NAMES[5],
+        }
+    }
+
+    /// Order `p`: the error at a fixed time is proportional to `dt^p`.
+    pub fn order(&self) -> u32 {
+        match self {
+            Self::ExplicitEuler { .. } | Self::SymplecticEuler { .. } => 1,
+            Self::VelocityVerlet { .. } => 2,
+            Self::RungeKutta4 { .. } | Self::Yoshida4 { .. } => 4,
+            Self::GaussRadau15 { .. } => 15,
+        }
+    }
+
+    /// Whether the flow keeps phase-space volume and, with it, energy within bounds.
+    pub fn is_symplectic(&self) -> bool {
+        matches!(self, Self::SymplecticEuler { .. } | Self::VelocityVerlet { .. } | Self::Yoshida4 { .. })
+    }
+
+    /// Length of the step, where it is fixed.
+    pub fn dt(&self) -> Option<f64> {
+        match *self {
+            Self::ExplicitEuler { dt }
+            | Self::SymplecticEuler { dt }
+            | Self::VelocityVerlet { dt }
+            | Self::RungeKutta4 { dt }
+            | Self::Yoshida4 { dt } => Some(dt),
+            Self::GaussRadau15 { .. } => None,
+        }
+    }
+
+    pub(crate) fn validate(&self) -> Result<(), Invalid> {
+        let positive = |key: &str, value: f64| {
+            if value.is_finite() && value > 0.0 { Ok(()) } else { Err(Invalid::new(key, value, "a positive number")) }
+        };
+        match *self {
+            Self::GaussRadau15 { tolerance, first_step } => {
+                positive("tolerance", tolerance)?;
+                first_step.map_or(Ok(()), |step| positive("first step", step))
+            }
+            _ => self.dt().map_or(Ok(()), |dt| positive("dt", dt)),
+        }
+    }
+
+    pub(crate) fn stepper<const D: usize>(&self) -> Stepper<D> {
+        match *self {
+            Self::ExplicitEuler { .. } => Stepper::RungeKutta(RungeKutta::new(&runge_kutta::EULER)),
+            Self::RungeKutta4 { .. } => Stepper::RungeKutta(RungeKutta::new(&runge_kutta::CLASSICAL)),
+            Self::SymplecticEuler { .. } => Stepper::Composition(composition::SYMPLECTIC_EULER),
+            Self::VelocityVerlet { .. } => Stepper::Composition(&composition::VELOCITY_VERLET),
+            Self::Yoshida4 { .. } => Stepper::Composition(&composition::YOSHIDA_4),
+            Self::GaussRadau15 { tolerance, first_step } => {
+                Stepper::GaussRadau(Box::new(GaussRadau::new(tolerance, first_step)))
+            }
+        }
+    }
+}
+
+/// An integrator with its working memory.
+pub(crate) enum Stepper<const D: usize> {
+    Composition(&'static Composition),
+    RungeKutta(RungeKutta<D>),
+    GaussRadau(Box<GaussRadau<D>>),
+}
+
+impl<const D: usize> Stepper<D> {
+    /// One step of a fixed-step integrator, from `start` to `end`.
+    pub(crate) fn step(&mut self, system: &mut System<D>, start: f64, end: f64, dt: f64) -> Result<(), Failure> {
+        match self {
+            Self::Composition(stages) => composition::step(stages, system, start, end, dt),
+            Self::RungeKutta(method) => method.step(system, start, end, dt),
+            Self::GaussRadau(_) => Ok(()), // chooses its own steps: see `TimeDriven::advance`
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_leads_to_the_integrator_of_that_name() {
+        for name in Integrator::NAMES {
+            assert_eq!(Integrator::from_name(name, 0.01).unwrap().name(), name);
+        }
+        assert!(Integrator::from_name("euler", 0.01).unwrap_err().expected.contains("velocity-verlet"));
+        assert_eq!(Integrator::from_name("yoshida-4", -0.5).unwrap_err().key, "dt");
+    }
+}

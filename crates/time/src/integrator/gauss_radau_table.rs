@@ -1,0 +1,109 @@
+//! The nodes of order 15 and the coefficients that follow from them.
+
+/// Number of coefficients of the acceleration's polynomial beyond the constant.
+pub(super) const ORDER: usize = 7;
+
+/// The left Gauss-Radau nodes on `[0, 1]`: `x = 2 h - 1` is a root of `P_7 + P_8`, Legendre's polynomials.
+pub(super) const NODES: [f64; ORDER + 1] = [
+    0.0,
+    0.056_262_560_536_922_146_465_652_191_031_8,
+    0.180_240_691_736_892_364_987_579_942_780,
+    0.352_624_717_113_169_637_373_907_769_648,
+    0.547_153_626_330_555_383_001_448_554_766,
+    0.734_210_177_215_410_531_523_210_605_558,
+    0.885_320_946_839_095_768_090_359_771_030,
+    0.977_520_613_561_287_501_891_174_488_626,
+];
+
+/// `BINOMIAL[n][k]`.
+pub(super) const BINOMIAL: [[f64; ORDER + 1]; ORDER + 1] = binomials();
+
+const fn binomials() -> [[f64; ORDER + 1]; ORDER + 1] {
+    let mut rows = [[0.0; ORDER + 1]; ORDER + 1];
+    let mut n = 0;
+    while n <= ORDER {
+        rows[n][0] = 1.0;
+        let mut k = 1;
+        while k <= n {
+            rows[n][k] = rows[n - 1][k - 1] + rows[n - 1][k];
+            k += 1;
+        }
+        n += 1;
+    }
+    rows
+}
+
+/// Conversions between `sum b_k h^(k+1)` and `sum g_k h (h - h_1) ... (h - h_k)`, `k = 0..7`.
+pub(super) struct Table {
+    /// `1/(h_n - h_m)`, `m < n`.
+    pub(super) inverse_gap: [[f64; ORDER + 1]; ORDER + 1],
+    /// Row `j`: the powers in Newton's polynomial `j`.
+    pub(super) power_from_newton: [[f64; ORDER]; ORDER],
+    /// Row `j`: the Newton polynomials in the power `j`.
+    pub(super) newton_from_power: [[f64; ORDER]; ORDER],
+}
+
+impl Table {
+    pub(super) fn new() -> Self {
+        let h = NODES;
+        let (mut inverse_gap, mut power_from_newton, mut newton_from_power) =
+            ([[0.0; ORDER + 1]; ORDER + 1], [[0.0; ORDER]; ORDER], [[0.0; ORDER]; ORDER]);
+        for n in 1..=ORDER {
+            for m in 0..n {
+                inverse_gap[n][m] = 1.0 / (h[n] - h[m]);
+            }
+        }
+        power_from_newton[0][0] = 1.0;
+        newton_from_power[0][0] = 1.0;
+        for j in 1..ORDER {
+            for k in 0..=j {
+                let lower = |row: &[f64; ORDER]| if k == 0 { 0.0 } else { row[k - 1] };
+                // N_j = (h - h_j) N_(j-1), and h N_k = N_(k+1) + h_(k+1) N_k.
+                power_from_newton[j][k] = lower(&power_from_newton[j - 1]) - h[j] * power_from_newton[j - 1][k];
+                newton_from_power[j][k] = lower(&newton_from_power[j - 1]) + h[k + 1] * newton_from_power[j - 1][k];
+            }
+        }
+        Self { inverse_gap, power_from_newton, newton_from_power }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn legendre(n: u32, x: f64) -> f64 {
+        let (mut before, mut value) = (1.0, x);
+        for k in 1..n {
+            let k = f64::from(k);
+            (before, value) = (value, ((2.0 * k + 1.0) * x * value - k * before) / (k + 1.0));
+        }
+        value
+    }
+
+    /// `|P_7 + P_8|` at a node is at most slope times the rounding of the node, plus the rounding of the recursion.
+    /// The slope of `P_n` on `[-1, 1]` is at most `n (n + 1)/2`: together 64.
+    #[test]
+    fn nodes_are_the_roots_of_the_radau_polynomial() {
+        for h in NODES {
+            let x = 2.0 * h - 1.0;
+            assert!((legendre(7, x) + legendre(8, x)).abs() < 64.0 * 2.0 * f64::EPSILON, "{h}");
+        }
+    }
+
+    #[test]
+    fn both_conversions_describe_the_same_polynomial() {
+        let table = Table::new();
+        let g = [0.3, -1.2, 0.7, 2.0, -0.4, 0.9, 1.1];
+        let b: [f64; ORDER] = std::array::from_fn(|k| (k..ORDER).map(|j| g[j] * table.power_from_newton[j][k]).sum());
+        for step in 0..=10 {
+            let x = 0.1 * f64::from(step);
+            let power = b.iter().rev().fold(0.0, |sum, b| (sum + b) * x);
+            let newton: f64 = (0..ORDER).map(|k| g[k] * NODES[1..=k].iter().fold(x, |product, h| product * (x - h))).sum();
+            assert!((power - newton).abs() < 50.0 * f64::EPSILON, "{power} {newton}");
+        }
+        for k in 0..ORDER {
+            let back: f64 = (k..ORDER).map(|j| b[j] * table.newton_from_power[j][k]).sum();
+            assert!((back - g[k]).abs() < 50.0 * f64::EPSILON);
+        }
+    }
+}

@@ -1,0 +1,250 @@
+//! What an integrator moves: particles in a boundary under forces, with the few operations integrators are made of.
+
+use corpuscle_core::{Axis, Boundary, Contact, Failure, Invalid, Meeting, Particles, Party, Vector};
+
+use crate::constraint::Held;
+use crate::force::Force;
+
+/// State and forces. Scratch arrays live beside what uses them.
+pub(crate) struct System<const D: usize> {
+    pub(crate) boundary: Boundary<D>,
+    pub(crate) particles: Particles<D>,
+    /// How often each particle went through the upper minus the lower face of a periodic axis.
+    pub(crate) images: Vec<[i64; D]>,
+    pub(crate) forces: Vec<Box<dyn Force<D>>>,
+    pub(crate) held: Vec<Held>,
+    /// Accelerations; those of the present positions when `fresh`.
+    pub(crate) acceleration: Vec<Vector<D>>,
+    pub(crate) fresh: bool,
+    /// Hits of walls since they were last taken out.
+    pub(crate) contacts: Vec<Contact<D>>,
+    velocity_dependent: bool,
+    estimate: Vec<Vector<D>>,
+}
+
+impl<const D: usize> System<D> {
+    pub(crate) fn new(boundary: Boundary<D>, particles: Particles<D>, forces: Vec<Box<dyn Force<D>>>) -> Result<Self, Invalid> {
+        let n = particles.len();
+        let velocity_dependent = forces.iter().any(|force| force.depends_on_velocity());
+        let mut system = Self {
+            boundary,
+            particles,
+            images: vec![[0; D]; n],
+            forces,
+            held: vec![],
+            acceleration: vec![Vector::ZERO; n],
+            fresh: false,
+            contacts: vec![],
+            velocity_dependent,
+            estimate: vec![],
+        };
+        system.admit()?;
+        Ok(system)
+    }
+
+    /// Checks everything and brings the particles into the box, after somebody changed something.
+    pub(crate) fn admit(&mut self) -> Result<(), Invalid> {
+        self.boundary.validate()?;
+        self.particles.validate()?;
+        if self.particles.is_empty() {
+            return Err(Invalid::new("particles", 0, "at least one"));
+        }
+        if !self.boundary.partitions.is_empty() {
+            return Err(Invalid::new(
+                "partitions",
+                self.boundary.partitions.len(),
+                "none: only the event-driven engine knows them; remove them or use it",
+            ));
+        }
+        let n = self.particles.len();
+        self.images.resize(n, [0; D]);
+        self.acceleration.resize(n, Vector::ZERO);
+        for (i, (&r, &radius)) in self.particles.position.iter().zip(&self.particles.radius).enumerate() {
+            for k in (0..D).filter(|&k| self.boundary.axes[k] == Axis::Walls) {
+                let margin = radius * (1.0 - 1e-12);
+                let (lower, upper) = (self.boundary.lower[k] + margin, self.boundary.upper[k] - margin);
+                if !(lower <= r[k] && r[k] <= upper) {
+                    return Err(Invalid::new(
+                        format!("position of particle {i}"),
+                        format!("{:?}", r.0),
+                        format!("a centre between {lower} and {upper} along axis {k}"),
+                    ));
+                }
+            }
+        }
+        if let Some(held) = self.held.iter().find(|held| held.particle >= n) {
+            return Err(Invalid::new("particles", n, format!("enough of them for the one held, {}", held.particle)));
+        }
+        for i in 0..n {
+            self.wrap(i);
+        }
+        self.fresh = false;
+        self.forces.iter().try_for_each(|force| force.validate(&self.boundary, &self.particles))
+    }
+
+    /// Accelerations at the present positions, unless they are known: the last ones of a step are the first of the next.
+    ///
+    /// Velocities lag behind positions by `lag` within a splitting step; forces that depend on velocity are shown the
+    /// velocity extrapolated to the time of the positions, which keeps second order (Groot and Warren 1997,
+    /// doi:10.1063/1.474784).
+    pub(crate) fn accelerate(&mut self, time: f64, lag: f64) {
+        if self.fresh {
+            return;
+        }
+        let extrapolate = self.velocity_dependent && lag != 0.0;
+        if extrapolate {
+            self.estimate.clear();
+            self.estimate.extend(self.particles.velocity.iter().zip(&self.acceleration).map(|(&v, &a)| v + a * lag));
+            std::mem::swap(&mut self.estimate, &mut self.particles.velocity);
+        }
+        self.acceleration.fill(Vector::ZERO);
+        for force in &mut self.forces {
+            force.accelerate(time, &self.boundary, &self.particles, &mut self.acceleration);
+        }
+        if extrapolate {
+            std::mem::swap(&mut self.estimate, &mut self.particles.velocity);
+        }
+        for held in &self.held {
+            self.acceleration[held.particle][held.axis] = 0.0;
+        }
+        self.fresh = true;
+    }
+
+    /// `v += a dt`.
+    pub(crate) fn kick(&mut self, dt: f64) {
+        for (v, &a) in self.particles.velocity.iter_mut().zip(&self.acceleration) {
+            *v += a * dt;
+        }
+    }
+
+    /// `r += v dt`.
+    pub(crate) fn drift(&mut self, dt: f64) {
+        for (r, &v) in self.particles.position.iter_mut().zip(&self.particles.velocity) {
+            *r += v * dt;
+        }
+        self.fresh = false;
+    }
+
+    /// Puts held and driven coordinates where they have to be at `time`.
+    pub(crate) fn hold(&mut self, time: f64) {
+        for held in &self.held {
+            held.apply(time, &mut self.particles);
+        }
+    }
+
+    /// The longest step of an adaptive integrator that cannot miss what forces and drives do.
+    pub(crate) fn longest_step(&self) -> f64 {
+        let forces = self.forces.iter().map(|force| force.longest_step());
+        forces.chain(self.held.iter().map(Held::longest_step)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Reflects at walls and wraps around periodic axes what moved out of the box in a step of length `dt` that ends at
+    /// `end`. Hits of walls are kept for the observer.
+    pub(crate) fn confine(&mut self, end: f64, dt: f64) -> Result<(), Failure> {
+        if self.boundary.axes.iter().all(|&axis| axis == Axis::Open) {
+            return Ok(());
+        }
+        for i in 0..self.particles.len() {
+            for k in 0..D {
+                let (lower, upper) = (self.boundary.lower[k], self.boundary.upper[k]);
+                let x = self.particles.position[i][k];
+                match self.boundary.axes[k] {
+                    Axis::Open => {}
+                    Axis::Periodic => {
+                        if !(lower <= x && x < upper) {
+                            self.wrap(i);
+                        }
+                    }
+                    Axis::Walls => {
+                        let radius = self.particles.radius[i];
+                        if x < lower + radius {
+                            self.reflect(i, k, false, end, dt)?;
+                        } else if x > upper - radius {
+                            self.reflect(i, k, true, end, dt)?;
+                        }
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn is_held(&self, i: usize, k: usize) -> bool {
+        self.held.iter().any(|held| held.particle == i && held.axis == k)
+    }
+
+    /// Brings particle `i` into the primary box and counts the faces it went through.
+    pub(crate) fn wrap(&mut self, i: usize) {
+        let r = self.particles.position[i];
+        let wrapped = self.boundary.wrap(r);
+        for k in 0..D {
+            if wrapped[k] != r[k] {
+                self.images[i][k] += ((r[k] - wrapped[k]) / (self.boundary.upper[k] - self.boundary.lower[k])).round() as i64;
+            }
+        }
+        self.particles.position[i] = wrapped;
+    }
+
+    /// Position of particle `i` on the path it took through the periodic images.
+    pub(crate) fn unwrapped(&self, i: usize) -> Vector<D> {
+        let side = self.boundary.extent();
+        Vector::from_fn(|k| self.particles.position[i][k] + self.images[i][k] as f64 * side[k])
+    }
+
+    /// Puts particle `i` at a position given outside the box.
+    pub(crate) fn set_unwrapped(&mut self, i: usize, position: Vector<D>) {
+        self.particles.position[i] = position;
+        self.images[i] = [0; D];
+        self.wrap(i);
+    }
+
+    /// Mirrors particle `i` at a face it has gone through and turns its velocity inwards.
+    fn reflect(&mut self, i: usize, k: usize, upper: bool, end: f64, dt: f64) -> Result<(), Failure> {
+        if self.is_held(i, k) {
+            return Ok(());
+        }
+        let radius = self.particles.radius[i];
+        let (low, high) = (self.boundary.lower[k] + radius, self.boundary.upper[k] - radius);
+        let face = if upper { high } else { low };
+        let outside = self.particles.position[i];
+        let mirrored = 2.0 * face - outside[k];
+        if !(low <= mirrored && mirrored <= high) {
+            let cause = format!(
+                "moved through the wall across axis {k} by {:.3e}, further than the box is wide; use a smaller dt",
+                (outside[k] - face).abs()
+            );
+            return Err(Failure { time: end, particle: Some(i), cause });
+        }
+        self.particles.position[i][k] = mirrored;
+        let before = self.particles.velocity[i];
+        if (before[k] > 0.0) == upper && before[k] != 0.0 {
+            let speed = before[k].abs();
+            let since = ((outside[k] - face).abs() / speed).min(dt);
+            let mut normal = Vector::ZERO;
+            normal[k] = if upper { 1.0 } else { -1.0 };
+            self.particles.velocity[i][k] = -before[k];
+            let mut position = outside - before * since;
+            position[k] = face;
+            let mass = self.particles.mass[i];
+            self.contacts.push(Contact {
+                time: end - since,
+                first: Party { index: i, mass, position, before, after: self.particles.velocity[i] },
+                with: Meeting::Face { axis: k, upper },
+                normal,
+                impulse: 2.0 * mass * speed,
+                distance: radius,
+            });
+        }
+        Ok(())
+    }
+
+    /// The first particle with a coordinate or velocity that is no longer a number.
+    pub(crate) fn first_lost(&self) -> Option<usize> {
+        // Branchless over whole arrays: the search for the culprit runs only when there is one.
+        let finite = |values: &[Vector<D>]| values.iter().fold(true, |all, v| v.0.iter().fold(all, |all, x| all & x.is_finite()));
+        if finite(&self.particles.position) && finite(&self.particles.velocity) {
+            return None;
+        }
+        (0..self.particles.len()).find(|&i| !(self.particles.position[i].is_finite() && self.particles.velocity[i].is_finite()))
+    }
+}
