@@ -28,11 +28,11 @@ pub(crate) struct Grid<const D: usize> {
     /// The part of them that is new after a step down or up along an axis.
     ahead: [[Vec<[u8; D]>; 2]; D],
     /// Indices of the large particles.
-    pub(crate) large: Vec<u32>,
+    large: Vec<u32>,
     /// For each of them, the cells its surface can reach.
     reach: Vec<Vec<[i32; D]>>,
     /// Shifts of a large particle's periodic images.
-    pub(crate) images: Vec<[i8; D]>,
+    images: Vec<[i8; D]>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -282,6 +282,16 @@ impl<const D: usize> Grid<D> {
             while j != NONE {
                 visit(j, self.shift(image), image);
                 j = self.places[j as usize].next;
+            }
+        }
+    }
+
+    /// All large particles, each in all periodic images.
+    #[inline]
+    pub(crate) fn visit_large(&self, mut visit: impl FnMut(u32, Vector<D>, [i8; D])) {
+        for &j in &self.large {
+            for &image in &self.images {
+                visit(j, self.shift(image), image);
             }
         }
     }

@@ -89,11 +89,7 @@ impl<const D: usize> EventDriven<D> {
         } else {
             self.grid.visit_around(&self.grid.neighbourhood(i as u32), &mut consider);
         }
-        for &j in &self.grid.large {
-            for &image in &self.grid.images {
-                consider(j, self.grid.shift(image), image);
-            }
-        }
+        self.grid.visit_large(&mut consider);
         self.keep(i, &search);
     }
 
@@ -170,9 +166,10 @@ impl<const D: usize> EventDriven<D> {
                 let plan = self.plans[i];
                 let mut search = self.search(i, plan.pair_time, plan.partner, plan.image);
                 let flights = &self.flights;
-                self.grid.visit_ahead(&self.grid.neighbourhood(i as u32), axis, exit.up, |j, shift, image| {
-                    search.consider::<FIELD>(j, &flights[j as usize], shift, image);
-                });
+                let mut consider = |j: u32, shift, image| search.consider::<FIELD>(j, &flights[j as usize], shift, image);
+                self.grid.visit_ahead(&self.grid.neighbourhood(i as u32), axis, exit.up, &mut consider);
+                // It may have come within reach of a large particle, which knows nothing of it yet.
+                self.grid.visit_large(&mut consider);
                 if (search.time, search.partner, search.image) != (plan.pair_time, plan.partner, plan.image) {
                     self.keep(i, &search);
                 }

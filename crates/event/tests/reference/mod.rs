@@ -36,8 +36,24 @@ impl<const D: usize> Reference<D> {
     }
 
     /// Moves on to the next contact, if there is one before `horizon` more time, and executes it.
+    ///
+    /// Free flight goes in pieces of at most half a box, so that few periodic images can be met in one.
     pub(crate) fn step(&mut self, horizon: f64) -> Option<Event> {
-        let mut best = (horizon, None);
+        let end = self.time + horizon;
+        while self.time < end {
+            let fastest = self.particles.velocity.iter().map(|v| v.norm()).fold(0.0, f64::max);
+            let side = self.boundary.extent().0.into_iter().fold(f64::INFINITY, f64::min);
+            let hastening = self.rules.field.norm();
+            let piece = (0.25 * side / (fastest + hastening * 0.1)).min(0.1 * side / (fastest * hastening).sqrt().max(1e-9));
+            if let Some(event) = self.piece(piece) {
+                return Some(event);
+            }
+        }
+        None
+    }
+
+    fn piece(&mut self, piece: f64) -> Option<Event> {
+        let mut best = (piece, None);
         let n = self.particles.len();
         for i in 0..n {
             for j in i + 1..n {
@@ -50,7 +66,7 @@ impl<const D: usize> Reference<D> {
             }
             self.obstacles(i, &mut best);
         }
-        let (delay, next) = (best.0, best.1?);
+        let (delay, next) = best;
         let g = self.rules.field;
         for i in 0..n {
             let v = self.particles.velocity[i];
@@ -58,7 +74,7 @@ impl<const D: usize> Reference<D> {
             self.particles.velocity[i] += g * delay;
         }
         self.time += delay;
-        let event = match next {
+        let event = next.map(|next| match next {
             Next::Pair(i, j, shift) => {
                 let r = self.particles.position[j] + shift - self.particles.position[i];
                 self.collide(i, Some(j), r / r.norm());
@@ -76,11 +92,11 @@ impl<const D: usize> Reference<D> {
                 self.collide(i, None, r / r.norm());
                 Event { time: self.time, first: i, second: None }
             }
-        };
+        });
         for r in &mut self.particles.position {
             *r = self.boundary.wrap(*r);
         }
-        Some(event)
+        event
     }
 
     /// Whole-box shifts to all images that could touch: two boxes in each direction are more than enough.
@@ -146,8 +162,8 @@ impl<const D: usize> Reference<D> {
                     place(0).hypot(place(1)) - radius
                 };
                 // Sample until the best time known, then bisect the first change from outside to inside.
-                let last = best.0.min(50.0);
-                let samples = 4000;
+                let last = best.0;
+                let samples = 200;
                 let step = last / f64::from(samples);
                 let mut before = distance(0.0);
                 for m in 1..=samples {
