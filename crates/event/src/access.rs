@@ -32,6 +32,11 @@ impl<const D: usize> EventDriven<D> {
         Lazy { position: flight.position, velocity: flight.velocity, time: self.epoch + flight.time }
     }
 
+    /// Radius of particle `i`.
+    pub fn radius(&self, i: usize) -> f64 {
+        self.flights[i].radius
+    }
+
     /// Position of particle `i` now, in the primary box.
     pub fn position(&self, i: usize) -> Vector<D> {
         self.boundary.wrap(self.flights[i].position_at(self.now, self.rules.field))

@@ -14,14 +14,13 @@ const FACE: f32 = 1.0;
 pub(crate) fn add_event_driven<const D: usize>(scene: &mut Scene, engine: &EventDriven<D>, shade: impl Fn(usize) -> f64) {
     scene.time = engine.time();
     scene.field = engine.rules().field.to_three();
-    let radius = engine.radii();
     scene.bodies.extend((0..engine.particle_count()).map(|i| {
         let lazy = engine.lazy(i);
         Body {
             position: lazy.position.to_three(),
             velocity: lazy.velocity.to_three(),
             time: lazy.time,
-            radius: radius[i],
+            radius: engine.radius(i),
             shade: shade(i),
         }
     }));

@@ -10,7 +10,19 @@ use rayon::prelude::*;
 ///
 /// # Errors
 /// The failure of the first member that failed.
-pub(crate) fn for_each<T: Send>(members: &mut [T], task: impl Fn(&mut T) -> Result<(), Failure> + Sync) -> Result<(), Failure> {
+pub(crate) fn for_each<T: Send>(
+    members: &mut [T],
+    task: impl Fn(&mut T) -> Result<(), Failure> + Sync + Send,
+) -> Result<(), Failure> {
     let outcomes: Vec<Result<(), Failure>> = members.par_iter_mut().map(task).collect();
+    outcomes.into_iter().collect()
+}
+
+/// Builds one member for each job, in parallel; of several errors the one of the first job is returned.
+///
+/// # Errors
+/// The error of the first job that failed.
+pub(crate) fn build<J: Sync, T: Send, E: Send>(jobs: &[J], make: impl Fn(&J) -> Result<T, E> + Sync + Send) -> Result<Vec<T>, E> {
+    let outcomes: Vec<Result<T, E>> = jobs.par_iter().map(make).collect();
     outcomes.into_iter().collect()
 }

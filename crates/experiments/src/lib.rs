@@ -3,6 +3,9 @@
 //!
 //! To add one, write the file and name it in [`REGISTRY`].
 
+mod drawing;
+mod ensemble;
+mod gas;
 pub mod parameter;
 pub mod simulation;
 

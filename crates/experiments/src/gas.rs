@@ -1,0 +1,98 @@
+//! The set-up of a hard-sphere gas, shared by the experiments on one: boxes from packing fractions, places without
+//! overlap, Maxwell's velocities.
+
+use corpuscle_core::particles::ball_volume;
+use corpuscle_core::placement::{lattice, maxwell};
+use corpuscle_core::{Boundary, Invalid, Particles, Random, Vector};
+
+/// Particles of one kind, to be added to a gas.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Species {
+    /// How many.
+    pub(crate) count: usize,
+    /// Radius of each.
+    pub(crate) radius: f64,
+    /// Mass of each.
+    pub(crate) mass: f64,
+    /// Index of the species.
+    pub(crate) index: u16,
+}
+
+/// Side of the cube (square) of which `count` balls of this radius fill the fraction `packing`:
+/// `L^D = N v / eta` with the volume `v` of one ball.
+pub(crate) fn side<const D: usize>(count: usize, radius: f64, packing: f64) -> f64 {
+    let volume = count as f64 * ball_volume::<D>(radius) / packing;
+    if D == 2 { volume.sqrt() } else { libm::cbrt(volume) } // sqrt and libm: the same bits on every platform
+}
+
+/// Adds a species at rest, on randomly chosen sites of a lattice in `region`, which may be a part of the system's box,
+/// clear of all particles that are there already.
+///
+/// A lattice is no equilibrium: let the gas run for some mean free times and some crossings of the box before measuring.
+///
+/// # Errors
+/// When the region is too small: says how many would fit.
+pub(crate) fn add<const D: usize>(
+    particles: &mut Particles<D>,
+    region: &Boundary<D>,
+    species: Species,
+    random: &mut Random,
+) -> Result<(), Invalid> {
+    let Species { count, radius, mass, index } = species;
+    let clear = |site: Vector<D>| {
+        let taken = particles.position.iter().zip(&particles.radius);
+        !taken.into_iter().any(|(&r, &other)| region.displacement(site, r).norm() < radius + other)
+    };
+    for site in lattice(region, count, radius, random, clear)? {
+        particles.push(site, Vector::ZERO, mass, radius, index);
+    }
+    Ok(())
+}
+
+/// Gives every particle a velocity from Maxwell's distribution, then scales all of them so that the kinetic temperature
+/// `2 E / (D N)` is exactly `temperature`: a start between walls, which conserve energy but not momentum, so that all
+/// `D N` degrees of freedom count. In a periodic box use [`maxwell`] with `exact`, which has `D (N - 1)`.
+pub(crate) fn heat<const D: usize>(particles: &mut Particles<D>, temperature: f64, random: &mut Random) {
+    maxwell(particles, temperature, false, random);
+    let scale = (temperature / particles.temperature(D * particles.len())).sqrt();
+    if scale.is_finite() {
+        particles.velocity.iter_mut().for_each(|v| *v = *v * scale);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use corpuscle_core::Axis;
+
+    const SMALL: Species = Species { count: 60, radius: 0.5, mass: 1.0, index: 0 };
+
+    #[test]
+    fn a_gas_fills_the_fraction_asked_for_and_has_its_temperature() {
+        let box_side = side::<3>(60, 0.5, 0.1);
+        let room = Boundary::<3>::new([0.0; 3], [box_side; 3], Axis::Walls);
+        let mut gas = Particles::new();
+        let mut random = Random::new(1, 0);
+        add(&mut gas, &room, SMALL, &mut random).unwrap();
+        heat(&mut gas, 2.5, &mut random);
+        room.validate_particles(&gas).unwrap();
+        assert!((gas.occupied_volume() / room.volume() - 0.1).abs() < 1e-14);
+        assert!((gas.temperature(180) - 2.5).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_bath_keeps_clear_of_what_is_there() {
+        let room = Boundary::<2>::periodic(20.0);
+        let mut gas = Particles::new();
+        gas.push(Vector([0.5, 19.5]), Vector::ZERO, 50.0, 3.0, 1); // across the corner of the box
+        add(&mut gas, &room, SMALL, &mut Random::new(1, 0)).unwrap();
+        assert_eq!(gas.len(), 61);
+        room.validate_particles(&gas).unwrap();
+    }
+
+    #[test]
+    fn too_many_are_refused() {
+        let room = Boundary::<2>::new([0.0; 2], [5.0; 2], Axis::Walls);
+        assert!(add(&mut Particles::new(), &room, SMALL, &mut Random::new(1, 0)).unwrap_err().expected.contains("25"));
+    }
+}
