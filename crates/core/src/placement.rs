@@ -25,7 +25,7 @@ pub fn lattice<const D: usize>(
     };
     let most: f64 = (0..D).map(|k| if room[k] < 0.0 { 0.0 } else { sites_along(k, 2.0 * radius.max(1e-9)) }).product();
     let volume: f64 = boundary.volume();
-    let mut spacing = (volume / count.max(1) as f64).powf(1.0 / D as f64);
+    let mut spacing = libm::pow(volume / count.max(1) as f64, 1.0 / D as f64);
     while spacing >= 2.0 * radius && spacing > 0.0 {
         let sides: [usize; D] = std::array::from_fn(|k| sites_along(k, spacing).max(0.0) as usize);
         if sides.iter().try_fold(1usize, |product, &n| product.checked_mul(n)).is_some_and(|sites| sites >= count) {
