@@ -1,0 +1,181 @@
+//! Discs in the plane and spheres in space.
+
+use corpuscle_scene::{Body, Colour, Colouring, Palette, Scene, viridis};
+
+use super::{SPACE, Space};
+use crate::RenderError;
+use crate::gl::{Gl, Pass, Program, Vertex, VertexBuffer};
+use crate::projection::pairs;
+
+const BODY: &str = include_str!("../shaders/body.glsl");
+
+/// Bodies are compared with what was uploaded, and uploaded again, in runs of this many.
+const RUN: usize = 256;
+
+/// A body as the shader takes it: 52 bytes.
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+struct BodyVertex {
+    high: [f32; 4],
+    low: [f32; 4],
+    velocity: [f32; 3],
+    form: [f32; 2],
+}
+
+impl Vertex for BodyVertex {
+    const FIELDS: &'static [i32] = &[4, 4, 3, 2];
+}
+
+impl From<&Body> for BodyVertex {
+    fn from(body: &Body) -> Self {
+        let [x, y, z] = body.position;
+        let [high, low] = pairs([x, y, z, body.time]);
+        Self { high, low, velocity: body.velocity.map(|v| v as f32), form: [body.radius as f32, body.shade as f32] }
+    }
+}
+
+/// All bodies of a scene, in the graphics memory.
+///
+/// What is uploaded depends on neither the camera nor the time of the picture (see [`crate::projection::pair`]), so that
+/// a body is sent again only after it has changed: with an event-driven engine, after it has collided.
+pub(crate) struct Bodies {
+    disc: Program,
+    sphere: Program,
+    buffer: VertexBuffer<BodyVertex>,
+    /// The bodies as they were when they were uploaded.
+    uploaded: Vec<Body>,
+    /// Kept between frames to save its allocation.
+    scratch: Vec<BodyVertex>,
+}
+
+impl Bodies {
+    pub(crate) fn new(gl: &Gl) -> Result<Self, RenderError> {
+        Ok(Self {
+            disc: Program::new(gl, "disc", &[SPACE, BODY, include_str!("../shaders/disc.glsl")])?,
+            sphere: Program::new(gl, "sphere", &[SPACE, BODY, include_str!("../shaders/sphere.glsl")])?,
+            buffer: VertexBuffer::new(gl)?,
+            uploaded: Vec::new(),
+            scratch: Vec::new(),
+        })
+    }
+
+    pub(crate) fn draw(&mut self, gl: &Gl, space: &Space, scene: &Scene) {
+        if displacement_is_fine(space, scene) {
+            self.upload(&scene.bodies);
+        } else {
+            let settled: Vec<Body> = scene.bodies.iter().map(|body| settled(body, scene.time, scene.field)).collect();
+            self.upload(&settled);
+        }
+        let program = if space.projection.is_spatial() {
+            Pass::Solid.begin(gl);
+            self.light(space);
+            &self.sphere
+        } else {
+            Pass::Paint.begin(gl);
+            self.disc.set("u_scale", space.projection.scale as f32);
+            self.disc.set("u_outline", space.palette.ground());
+            &self.disc
+        };
+        program.set("u_field", scene.field.map(|g| g as f32));
+        colour(program, &scene.colouring, space.palette);
+        space.enter(program);
+        self.buffer.draw();
+    }
+
+    fn light(&self, space: &Space) {
+        let distance = space.projection.distance as f32;
+        self.sphere.set("u_focal", space.projection.focal() as f32);
+        self.sphere.set("u_multisampled", i32::from(space.samples > 1));
+        self.sphere.set("u_ground", space.palette.ground());
+        self.sphere.set("u_haze", [0.8 * distance, 1.0 / (0.8 * distance)]);
+    }
+
+    /// Sends what differs from what is there.
+    fn upload(&mut self, bodies: &[Body]) {
+        if bodies.len() != self.uploaded.len() {
+            self.scratch.clear();
+            self.scratch.extend(bodies.iter().map(BodyVertex::from));
+            self.buffer.replace(&self.scratch);
+            self.uploaded.clear();
+            self.uploaded.extend_from_slice(bodies);
+            return;
+        }
+        let changed = |run: usize, uploaded: &[Body]| {
+            let range = run * RUN..bodies.len().min((run + 1) * RUN);
+            bodies[range.clone()] != uploaded[range]
+        };
+        let runs = bodies.len().div_ceil(RUN);
+        let mut run = 0;
+        while run < runs {
+            let first = run;
+            while run < runs && changed(run, &self.uploaded) {
+                run += 1;
+            }
+            if run > first {
+                let range = first * RUN..bodies.len().min(run * RUN);
+                self.scratch.clear();
+                self.scratch.extend(bodies[range.clone()].iter().map(BodyVertex::from));
+                self.buffer.write(range.start, &self.scratch);
+                self.uploaded[range.clone()].copy_from_slice(&bodies[range]);
+            }
+            run += 1;
+        }
+    }
+}
+
+/// The body at another time on the same free flight, in double precision.
+fn settled(body: &Body, time: f64, g: [f64; 3]) -> Body {
+    let dt = time - body.time;
+    let (x, v) = (body.position, body.velocity);
+    Body {
+        position: std::array::from_fn(|k| x[k] + (v[k] + 0.5 * dt * g[k]) * dt),
+        velocity: std::array::from_fn(|k| v[k] + g[k] * dt),
+        time,
+        ..*body
+    }
+}
+
+/// Whether the shader's `v dt + g dt^2 / 2` in single precision is right within a quarter of a pixel for every body.
+/// It is but under a deep zoom on bodies that have come a long way; those are moved in double precision.
+fn displacement_is_fine(space: &Space, scene: &Scene) -> bool {
+    // Three roundings of a displacement of at most `reach` pixels.
+    let most = 0.25 / (3.0 * f64::from(f32::EPSILON)) / space.projection.scale;
+    let norm2 = |v: [f64; 3]| v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    let g = norm2(scene.field).sqrt();
+    scene.bodies.iter().all(|body| {
+        let dt = (scene.time - body.time).abs();
+        (norm2(body.velocity).sqrt() + 0.5 * g * dt) * dt <= most
+    })
+}
+
+/// Sets the uniforms from which `body.glsl` takes its colours.
+fn colour(program: &Program, colouring: &Colouring, palette: Palette) {
+    let plain = |colour| {
+        let [r, g, b, _] = palette.rgba(colour);
+        [r, g, b]
+    };
+    let continuous = |least: f64, most: f64| {
+        let knots: [[f32; 3]; 11] = std::array::from_fn(|k| viridis(k as f64 / 10.0).map(|c| c as f32));
+        program.set("u_map", &knots[..]);
+        program.set("u_colours", 11);
+        let extent = most - least;
+        program.set("u_range", [least as f32, if extent > 0.0 { (1.0 / extent) as f32 } else { 0.0 }]);
+    };
+    let map: Vec<[f32; 3]> = match colouring {
+        Colouring::Uniform(colour) => vec![plain(*colour)],
+        Colouring::Species(_) => (0..8).map(|index| plain(Colour::Accent(index))).collect(),
+        Colouring::Speed { most, .. } => return by_scale(program, true, || continuous(0.0, *most)),
+        Colouring::Value { least, most, .. } => return by_scale(program, false, || continuous(*least, *most)),
+    };
+    program.set("u_by_speed", 0);
+    program.set("u_continuous", 0);
+    program.set("u_map", &map[..]);
+    // One colour for all: whatever the shade is, its remainder is 0.
+    program.set("u_colours", map.len() as i32);
+}
+
+fn by_scale(program: &Program, by_speed: bool, set_scale: impl FnOnce()) {
+    program.set("u_by_speed", i32::from(by_speed));
+    program.set("u_continuous", 1);
+    set_scale();
+}

@@ -1,0 +1,28 @@
+// A body in the plane: a disc with an edge antialiased by its exact distance, and a thin outline.
+flat varying vec4 v_colour;
+flat varying float v_radius;        // pixels
+varying vec2 v_place;               // pixels from the centre
+
+#ifdef VERTEX
+uniform float u_scale;              // pixels in the simulation's length
+
+void main() {
+    vec2 size = visible_size(a_form.x * u_scale);
+    vec4 clip = u_projection * vec4(eye_from_centre(place_now()), 1.0);
+    v_colour = vec4(colour_now(), size.y);
+    v_radius = size.x;
+    v_place = (2.0 * corner_of_quad() - 1.0) * (size.x + 1.0);
+    gl_Position = clip + vec4(2.0 * v_place / u_frame, 0.0, 0.0);
+}
+#else
+uniform vec3 u_outline;             // what the outline is mixed with
+out vec4 colour;
+
+void main() {
+    float inside = v_radius - length(v_place);
+    float coverage = clamp(inside + 0.5, 0.0, 1.0);
+    float width = min(1.25 * u_point, 0.22 * v_radius);
+    float outline = 0.5 * clamp(width - inside + 0.5, 0.0, 1.0) * smoothstep(1.5, 4.0, v_radius / u_point);
+    colour = vec4(mix(v_colour.rgb, u_outline, outline), v_colour.a * coverage);
+}
+#endif
