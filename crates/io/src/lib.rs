@@ -1,1 +1,24 @@
-//! To be written.
+//! Files: what a run is read from and what it leaves behind. One format a file.
+//!
+//! [`Scenario`] says what to run, [`Record`] what came of it; the other modules write a record down.
+
+pub mod csv;
+pub mod number;
+pub mod record;
+pub mod refusal;
+pub mod report;
+pub mod scenario;
+pub mod summary;
+pub mod write;
+pub mod xyz;
+
+pub use record::{Ending, Picture, Record};
+pub use refusal::{Origin, Place, Refusal};
+pub use scenario::{Registry, Scenario};
+pub use write::{Folder, WriteError};
+
+/// The version of the program, written into everything it leaves behind.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+#[cfg(test)]
+mod example;
