@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use corpuscle_core::{Axis, Boundary, Engine, Failure, Invalid, Observer, Particles, Vector};
 
 use crate::calendar::Calendar;
-use crate::grid::Grid;
+use crate::grid::{Candidates, Grid};
 use crate::motion::Flight;
 use crate::plan::Plan;
 use crate::surface::{Surface, surfaces};
@@ -44,6 +44,7 @@ pub struct EventDriven<const D: usize> {
     pub(crate) plans: Vec<Plan<D>>,
     pub(crate) bodies: Vec<Body<D>>,
     pub(crate) grid: Grid<D>,
+    pub(crate) candidates: Candidates,
     pub(crate) surfaces: Vec<Surface<D>>,
     pub(crate) calendar: Calendar,
     /// Times in flights, plans and calendar count from here, so that they stay small and fine.
@@ -91,6 +92,7 @@ impl<const D: usize> EventDriven<D> {
         let flights: Vec<_> = (0..n).map(flight).collect();
         let mut engine = Self {
             grid: Grid::new(&boundary, |i| flights[i].position, &particles.radius),
+            candidates: Candidates::default(),
             surfaces: surfaces(&boundary),
             flights,
             plans: vec![Plan::IDLE; n],

@@ -21,7 +21,7 @@ pub(crate) struct Grid<const D: usize> {
     axes: [Axis; D],
     cells: [u32; D],
     stride: [u32; D],
-    heads: Vec<u32>,
+    content: Vec<Cell>,
     places: Vec<Place<D>>,
     /// All of `{-1, 0, 1}^D`, plus one.
     around: Vec<[u8; D]>,
@@ -35,19 +35,78 @@ pub(crate) struct Grid<const D: usize> {
     images: Vec<[i8; D]>,
 }
 
+/// Where a particle is: its cell, and the one after it in the list of an overfull cell.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place<const D: usize> {
-    pub(crate) next: u32,
-    pub(crate) cell: [u16; D],
+struct Place<const D: usize> {
+    next: u32,
+    cell: [u16; D],
+}
+
+const SLOTS: usize = 6;
+
+/// The particles of a cell: the first few side by side, so that they can be copied without looking how many there are;
+/// any more in a list threaded through the particles.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
+struct Cell {
+    slots: [u32; SLOTS],
+    filled: u32,
+    more: u32,
+}
+
+impl Cell {
+    const EMPTY: Self = Self { slots: [NONE; SLOTS], filled: 0, more: NONE };
+}
+
+/// The candidates for a collision: memory that is used again and again.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Candidates {
+    /// Particles, and the number of the neighbour cell (an offset in base three) each was found in.
+    pub(crate) index: Vec<u32>,
+    pub(crate) cell: Vec<u8>,
+    pub(crate) count: usize,
+    /// Those of them that pass a first test.
+    pub(crate) chosen: Vec<u32>,
 }
 
 /// The neighbourhood of one cell: index contributions and images of the lower, own and upper layer along each axis.
 #[derive(Clone, Copy)]
-pub(crate) struct Neighbourhood<const D: usize> {
+struct Neighbourhood<const D: usize> {
     part: [[u32; 3]; D],
+    image: [[i8; 3]; D],
+}
+
+/// Periodic images of the lower, own and upper layer of cells along each axis.
+pub(crate) struct ImagesAround<const D: usize> {
     image: [[i8; 3]; D],
     shift: [[f64; 3]; D],
 }
+
+impl<const D: usize> ImagesAround<D> {
+    /// Image and shift of the neighbour cell of this number.
+    #[inline]
+    pub(crate) fn of(&self, number: u8) -> ([i8; D], Vector<D>) {
+        let layer = |k: usize| DIGITS[number as usize % 27][k] as usize;
+        (std::array::from_fn(|k| self.image[k][layer(k)]), Vector::from_fn(|k| self.shift[k][layer(k)]))
+    }
+
+    /// Whether any neighbour is seen in another image than the primary one.
+    #[inline]
+    pub(crate) fn any(&self) -> bool {
+        self.image.iter().any(|layers| layers[0] != 0 || layers[2] != 0)
+    }
+}
+
+/// The digits of the numbers up to 27 in base three.
+const DIGITS: [[u8; 3]; 27] = {
+    let mut digits = [[0; 3]; 27];
+    let mut number = 0;
+    while number < 27 {
+        digits[number] = [(number % 3) as u8, (number / 3 % 3) as u8, (number / 9) as u8];
+        number += 1;
+    }
+    digits
+};
 
 impl<const D: usize> Grid<D> {
     pub(crate) fn new(boundary: &Boundary<D>, position: impl Fn(usize) -> Vector<D>, radii: &[f64]) -> Self {
@@ -76,7 +135,7 @@ impl<const D: usize> Grid<D> {
             axes: boundary.axes,
             cells,
             stride,
-            heads: vec![NONE; cells.iter().product::<u32>() as usize],
+            content: vec![Cell::EMPTY; cells.iter().product::<u32>() as usize],
             places: Vec::with_capacity(count),
             around,
             ahead,
@@ -138,18 +197,40 @@ impl<const D: usize> Grid<D> {
 
     #[inline]
     fn insert(&mut self, i: u32) {
-        let cell = self.index(self.places[i as usize].cell);
-        self.places[i as usize].next = std::mem::replace(&mut self.heads[cell], i);
+        let place = self.index(self.places[i as usize].cell);
+        let cell = &mut self.content[place];
+        if let Some(slot) = cell.slots.get_mut(cell.filled as usize) {
+            *slot = i;
+            cell.filled += 1;
+        } else {
+            self.places[i as usize].next = std::mem::replace(&mut cell.more, i);
+        }
     }
 
+    #[inline]
     fn remove(&mut self, i: u32) {
-        let cell = self.index(self.places[i as usize].cell);
+        let place = self.index(self.places[i as usize].cell);
+        let cell = &mut self.content[place];
+        let Some(slot) = cell.slots[..cell.filled as usize].iter().position(|&j| j == i) else {
+            return self.remove_from_list(place, i);
+        };
+        if cell.more == NONE {
+            cell.filled -= 1;
+            cell.slots[slot] = cell.slots[cell.filled as usize];
+        } else {
+            cell.slots[slot] = cell.more;
+            cell.more = self.places[cell.more as usize].next;
+        }
+    }
+
+    #[cold]
+    fn remove_from_list(&mut self, place: usize, i: u32) {
         let next = self.places[i as usize].next;
-        if self.heads[cell] == i {
-            self.heads[cell] = next;
+        if self.content[place].more == i {
+            self.content[place].more = next;
             return;
         }
-        let mut before = self.heads[cell];
+        let mut before = self.content[place].more;
         while self.places[before as usize].next != i {
             before = self.places[before as usize].next;
         }
@@ -203,9 +284,9 @@ impl<const D: usize> Grid<D> {
     }
 
     #[inline]
-    pub(crate) fn neighbourhood(&self, i: u32) -> Neighbourhood<D> {
+    fn neighbourhood(&self, i: u32) -> Neighbourhood<D> {
         let cell = self.places[i as usize].cell;
-        let mut around = Neighbourhood { part: [[0; 3]; D], image: [[0; 3]; D], shift: [[0.0; 3]; D] };
+        let mut around = Neighbourhood { part: [[0; 3]; D], image: [[0; 3]; D] };
         for k in 0..D {
             let (c, last, stride) = (u32::from(cell[k]), self.cells[k] - 1, self.stride[k]);
             let here = c * stride;
@@ -213,12 +294,10 @@ impl<const D: usize> Grid<D> {
             if c == 0 {
                 around.part[k][0] = self.beyond(k, last * stride);
                 around.image[k][0] = -1;
-                around.shift[k][0] = self.lower[k] - self.upper[k];
             }
             if c == last {
                 around.part[k][2] = self.beyond(k, 0);
                 around.image[k][2] = 1;
-                around.shift[k][2] = self.upper[k] - self.lower[k];
             }
         }
         around
@@ -229,39 +308,59 @@ impl<const D: usize> Grid<D> {
         if self.axes[axis] == Axis::Periodic { around } else { OUTSIDE }
     }
 
-    /// All small particles in the cells around a cell, each with the image it is met in.
+    /// Collects all small particles in the cells around that of `i`, itself included.
     #[inline]
-    pub(crate) fn visit_around(&self, around: &Neighbourhood<D>, visit: impl FnMut(u32, Vector<D>, [i8; D])) {
-        self.visit(around, &self.around, visit);
+    pub(crate) fn collect_around(&self, i: u32, found: &mut Candidates) {
+        self.collect(i, &self.around, found);
     }
 
     /// The same, for the layer of cells that is new after a step.
     #[inline]
-    pub(crate) fn visit_ahead(
-        &self,
-        around: &Neighbourhood<D>,
-        axis: usize,
-        up: bool,
-        visit: impl FnMut(u32, Vector<D>, [i8; D]),
-    ) {
-        self.visit(around, &self.ahead[axis][usize::from(up)], visit);
+    pub(crate) fn collect_ahead(&self, i: u32, axis: usize, up: bool, found: &mut Candidates) {
+        self.collect(i, &self.ahead[axis][usize::from(up)], found);
     }
 
     #[inline]
-    fn visit(&self, around: &Neighbourhood<D>, offsets: &[[u8; D]], mut visit: impl FnMut(u32, Vector<D>, [i8; D])) {
+    fn collect(&self, i: u32, offsets: &[[u8; D]], found: &mut Candidates) {
+        let around = self.neighbourhood(i);
+        let mut count = 0;
         for offset in offsets {
-            let mut cell = 0;
-            for k in 0..D {
+            let (mut cell, mut number) = (0, 0);
+            for k in (0..D).rev() {
                 cell += around.part[k][offset[k] as usize];
+                number = number * 3 + offset[k];
             }
-            let Some(&head) = self.heads.get(cell as usize) else { continue };
-            let mut j = head;
+            let Some(cell) = self.content.get(cell as usize) else { continue };
+            if count + SLOTS > found.index.len() {
+                found.index.resize(2 * (count + SLOTS), 0);
+                found.cell.resize(2 * (count + SLOTS), 0);
+            }
+            found.index[count..count + SLOTS].copy_from_slice(&cell.slots);
+            found.cell[count..count + SLOTS].fill(number);
+            count += cell.filled as usize;
+            let mut j = cell.more;
             while j != NONE {
-                let shift = Vector::from_fn(|k| around.shift[k][offset[k] as usize]);
-                visit(j, shift, std::array::from_fn(|k| around.image[k][offset[k] as usize]));
+                if count == found.index.len() {
+                    found.index.push(0);
+                    found.cell.push(0);
+                }
+                (found.index[count], found.cell[count]) = (j, number);
+                count += 1;
                 j = self.places[j as usize].next;
             }
         }
+        found.count = count;
+        if found.chosen.len() < count {
+            found.chosen.resize(2 * count, 0);
+        }
+    }
+
+    /// The periodic images the cells around that of `i` are seen in, by number.
+    #[inline]
+    pub(crate) fn images_around(&self, i: u32) -> ImagesAround<D> {
+        let around = self.neighbourhood(i);
+        let side = Vector::<D>::from_fn(|k| self.upper[k] - self.lower[k]);
+        ImagesAround { image: around.image, shift: std::array::from_fn(|k| around.image[k].map(|turns| f64::from(turns) * side[k])) }
     }
 
     /// All small particles in the cells that the surface of a large one can reach; `number` counts the large ones.
@@ -278,9 +377,11 @@ impl<const D: usize> Grid<D> {
                 image[k] = turns as i8;
                 cell += place.rem_euclid(cells) as u32 * self.stride[k];
             }
-            let mut j = self.heads[cell as usize];
+            let (cell, shift) = (&self.content[cell as usize], self.shift(image));
+            cell.slots[..cell.filled as usize].iter().for_each(|&j| visit(j, shift, image));
+            let mut j = cell.more;
             while j != NONE {
-                visit(j, self.shift(image), image);
+                visit(j, shift, image);
                 j = self.places[j as usize].next;
             }
         }
@@ -309,7 +410,7 @@ fn offsets<const D: usize>() -> Vec<[u8; D]> {
 }
 
 /// Mean number of particles in a cell below which finer cells only cost crossings. Measured: docs/performance.md.
-const OCCUPANCY: f64 = 0.6;
+const OCCUPANCY: f64 = 0.9;
 
 /// The cell width with the least estimated work; particles of larger diameter count as large.
 ///

@@ -3,6 +3,7 @@
 use corpuscle_core::Vector;
 
 use crate::engine::EventDriven;
+use crate::grid::{Candidates, ImagesAround};
 use crate::motion::{Flight, contact_delay, upward_passage};
 use crate::plan::{Exit, Plan};
 
@@ -17,26 +18,45 @@ struct Search<const D: usize> {
 }
 
 impl<const D: usize> Search<D> {
-    /// Tests another particle in one of its periodic images.
+    /// Whether another particle in one of its periodic images comes to contact at all: a test without branches.
     ///
     /// The states are compared at the later of the two own times. Every operation is odd under exchange of the two
     /// particles, so the time found is the same bits whichever of them is searched for.
+    #[inline]
+    fn may_meet<const FIELD: bool, const FRESH: bool>(&self, other: &Flight<D>, shift: Vector<D>) -> bool {
+        let (_, r, v) = self.approach::<FIELD, FRESH>(other, shift);
+        let s = self.me.radius + other.radius;
+        let b = r.dot(v);
+        let c = r.norm_squared() - s * s;
+        // Not `&&`: without branches the tests of many candidates overlap.
+        (b < 0.0) & (b * b - v.norm_squared() * c >= 0.0)
+    }
+
+    /// The later of the two own times, and the distance and relative velocity then.
+    #[inline]
+    fn approach<const FIELD: bool, const FRESH: bool>(&self, other: &Flight<D>, shift: Vector<D>) -> (f64, Vector<D>, Vector<D>) {
+        let me = &self.me;
+        // A particle that has just collided is at the later time.
+        let reference = if FRESH { me.time } else { me.time.max(other.time) };
+        let (mine, its) = (reference - me.time, reference - other.time);
+        if FIELD {
+            let (r1, r2) = (me.position_at(reference, self.field), other.position_at(reference, self.field));
+            (reference, r2 - r1 + shift, other.velocity_at(reference, self.field) - me.velocity_at(reference, self.field))
+        } else {
+            let r1 = if FRESH { me.position } else { me.position + me.velocity * mine };
+            let r2 = other.position + other.velocity * its;
+            (reference, r2 - r1 + shift, other.velocity - me.velocity)
+        }
+    }
+
+    /// Tests another particle in one of its periodic images.
     #[inline]
     fn consider<const FIELD: bool>(&mut self, j: u32, other: &Flight<D>, shift: Vector<D>, image: [i8; D]) {
         if j == self.index {
             return;
         }
-        let me = &self.me;
-        let reference = me.time.max(other.time);
-        let (mine, its) = (reference - me.time, reference - other.time);
-        let (r, v) = if FIELD {
-            let (r1, r2) = (me.position_at(reference, self.field), other.position_at(reference, self.field));
-            (r2 - r1 + shift, other.velocity_at(reference, self.field) - me.velocity_at(reference, self.field))
-        } else {
-            let (r1, r2) = (me.position + me.velocity * mine, other.position + other.velocity * its);
-            (r2 - r1 + shift, other.velocity - me.velocity)
-        };
-        let s = me.radius + other.radius;
+        let (reference, r, v) = self.approach::<FIELD, false>(other, shift);
+        let s = self.me.radius + other.radius;
         let time = reference + contact_delay(r, v, s, self.time - reference);
         if (time < self.time || (time == self.time && j < self.partner)) && s > 0.0 && time < f64::INFINITY {
             (self.time, self.partner, self.image) = (time, j, image);
@@ -83,14 +103,47 @@ impl<const D: usize> EventDriven<D> {
         self.counts.predictions += 1;
         let mut search = self.search(i, f64::INFINITY, u32::MAX, [0; D]);
         let flights = &self.flights;
-        let mut consider = |j: u32, shift, image| search.consider::<FIELD>(j, &flights[j as usize], shift, image);
         if let Some(number) = self.grid.is_large(i as u32) {
-            self.grid.visit_reach(number, &mut consider);
+            self.grid.visit_reach(number, |j, shift, image| search.consider::<FIELD>(j, &flights[j as usize], shift, image));
         } else {
-            self.grid.visit_around(&self.grid.neighbourhood(i as u32), &mut consider);
+            self.grid.collect_around(i as u32, &mut self.candidates);
+            self.choose::<FIELD>(&mut search);
         }
-        self.grid.visit_large(&mut consider);
+        let flights = &self.flights;
+        self.grid.visit_large(|j, shift, image| search.consider::<FIELD>(j, &flights[j as usize], shift, image));
         self.keep(i, &search);
+    }
+
+    /// Finds the earliest collision among the candidates: first, without a branch, who comes to contact at all, then when.
+    fn choose<const FIELD: bool>(&mut self, search: &mut Search<D>) {
+        let images = self.grid.images_around(search.index);
+        let count = match (search.me.time == self.now, images.any()) {
+            (true, true) => self.filter::<FIELD, true, true>(search, &images),
+            (true, false) => self.filter::<FIELD, true, false>(search, &images),
+            (false, true) => self.filter::<FIELD, false, true>(search, &images),
+            (false, false) => self.filter::<FIELD, false, false>(search, &images),
+        };
+        for &number in &self.candidates.chosen[..count] {
+            let (j, cell) = (self.candidates.index[number as usize], self.candidates.cell[number as usize]);
+            let (image, shift) = images.of(cell);
+            search.consider::<FIELD>(j, &self.flights[j as usize], shift, image);
+        }
+    }
+
+    fn filter<const FIELD: bool, const FRESH: bool, const IMAGES: bool>(
+        &mut self,
+        search: &Search<D>,
+        images: &ImagesAround<D>,
+    ) -> usize {
+        let Candidates { index, cell, count, chosen } = &mut self.candidates;
+        let (index, cell, chosen) = (&index[..*count], &cell[..*count], &mut chosen[..*count]);
+        let mut met = 0;
+        for number in 0..*count {
+            let shift = if IMAGES { images.of(cell[number]).1 } else { Vector::ZERO };
+            chosen[met] = number as u32;
+            met += usize::from(search.may_meet::<FIELD, FRESH>(&self.flights[index[number] as usize], shift));
+        }
+        met
     }
 
     fn search(&self, i: usize, time: f64, partner: u32, image: [i8; D]) -> Search<D> {
@@ -165,11 +218,11 @@ impl<const D: usize> EventDriven<D> {
             } else {
                 let plan = self.plans[i];
                 let mut search = self.search(i, plan.pair_time, plan.partner, plan.image);
-                let flights = &self.flights;
-                let mut consider = |j: u32, shift, image| search.consider::<FIELD>(j, &flights[j as usize], shift, image);
-                self.grid.visit_ahead(&self.grid.neighbourhood(i as u32), axis, exit.up, &mut consider);
+                self.grid.collect_ahead(i as u32, axis, exit.up, &mut self.candidates);
+                self.choose::<FIELD>(&mut search);
                 // It may have come within reach of a large particle, which knows nothing of it yet.
-                self.grid.visit_large(&mut consider);
+                let flights = &self.flights;
+                self.grid.visit_large(|j, shift, image| search.consider::<FIELD>(j, &flights[j as usize], shift, image));
                 if (search.time, search.partner, search.image) != (plan.pair_time, plan.partner, plan.image) {
                     self.keep(i, &search);
                 }

@@ -22,6 +22,23 @@ pub(crate) fn periodic_fluid<const D: usize>(n: usize, packing: f64, seed: u64) 
     EventDriven::new(boundary, particles, Rules::default()).unwrap()
 }
 
+/// `4 c^3` equal spheres of diameter and mass 1 at temperature 1 on a face-centred cubic lattice: dense starts.
+pub(crate) fn face_centred(c: usize, packing: f64, seed: u64) -> EventDriven<3> {
+    let n = 4 * c.pow(3);
+    let side = (n as f64 * corpuscle_core::particles::ball_volume::<3>(0.5) / packing).cbrt();
+    let mut particles = Particles::new();
+    let step = side / c as f64;
+    for cell in 0..c.pow(3) {
+        let corner = [cell % c, cell / c % c, cell / (c * c)];
+        for basis in [[0.25, 0.25, 0.25], [0.75, 0.75, 0.25], [0.75, 0.25, 0.75], [0.25, 0.75, 0.75]] {
+            let place = Vector::from_fn(|k| (corner[k] as f64 + basis[k]) * step);
+            particles.push(place, Vector::ZERO, 1.0, 0.5, 0);
+        }
+    }
+    maxwell(&mut particles, 1.0, true, &mut Random::new(seed, 0));
+    EventDriven::new(Boundary::periodic(side), particles, Rules::default()).unwrap()
+}
+
 /// Keeps every contact.
 #[derive(Default)]
 pub(crate) struct Record<const D: usize> {
