@@ -208,7 +208,7 @@ impl<const D: usize> TimeDriven<D> {
                     "a fixed-step one where there are hard walls: a reflection is not smooth",
                 ));
             }
-            method.restart(&self.system, self.time);
+            method.restart(&mut self.system, self.time);
         }
         self.keep();
         Ok(())

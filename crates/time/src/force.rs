@@ -31,6 +31,20 @@ pub trait Force<const D: usize>: Send {
     /// Adds the acceleration of every particle.
     fn accelerate(&mut self, time: f64, boundary: &Boundary<D>, particles: &Particles<D>, acceleration: &mut [Vector<D>]);
 
+    /// The same with positions to twice the precision, `r + remainder`. Worth using where the difference of two nearby
+    /// positions decides: bodies in a close encounter far from the origin.
+    fn accelerate_precisely(
+        &mut self,
+        time: f64,
+        boundary: &Boundary<D>,
+        particles: &Particles<D>,
+        remainder: &[Vector<D>],
+        acceleration: &mut [Vector<D>],
+    ) {
+        let _ = remainder;
+        self.accelerate(time, boundary, particles, acceleration);
+    }
+
     /// Potential energy; zero for a force that has none.
     fn energy(&self, time: f64, boundary: &Boundary<D>, particles: &Particles<D>) -> f64;
 
@@ -74,7 +88,9 @@ fn massive<const D: usize>(force: &str, particle: usize, particles: &Particles<D
     match particles.mass.get(particle) {
         None => Err(Invalid::new(format!("{force} at particle"), particle, format!("an index below {}", particles.len()))),
         Some(mass) if *mass > 0.0 => Ok(()),
-        Some(mass) => Err(Invalid::new(format!("mass of particle {particle}"), mass, format!("a positive mass: {force} acts on it"))),
+        Some(mass) => {
+            Err(Invalid::new(format!("mass of particle {particle}"), mass, format!("a positive mass: {force} acts on it")))
+        }
     }
 }
 

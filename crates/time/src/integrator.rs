@@ -133,9 +133,7 @@ impl Integrator {
             Self::SymplecticEuler { .. } => Stepper::Composition(composition::SYMPLECTIC_EULER),
             Self::VelocityVerlet { .. } => Stepper::Composition(&composition::VELOCITY_VERLET),
             Self::Yoshida4 { .. } => Stepper::Composition(&composition::YOSHIDA_4),
-            Self::GaussRadau15 { tolerance, first_step } => {
-                Stepper::GaussRadau(Box::new(GaussRadau::new(tolerance, first_step)))
-            }
+            Self::GaussRadau15 { tolerance, first_step } => Stepper::GaussRadau(Box::new(GaussRadau::new(tolerance, first_step))),
         }
     }
 }

@@ -18,6 +18,8 @@ pub(crate) struct System<const D: usize> {
     pub(crate) fresh: bool,
     /// Hits of walls since they were last taken out.
     pub(crate) contacts: Vec<Contact<D>>,
+    /// What rounding took from the positions, where the integrator knows it; else empty.
+    pub(crate) remainder: Vec<Vector<D>>,
     velocity_dependent: bool,
     estimate: Vec<Vector<D>>,
 }
@@ -35,6 +37,7 @@ impl<const D: usize> System<D> {
             acceleration: vec![Vector::ZERO; n],
             fresh: false,
             contacts: vec![],
+            remainder: vec![],
             velocity_dependent,
             estimate: vec![],
         };
@@ -99,7 +102,11 @@ impl<const D: usize> System<D> {
         }
         self.acceleration.fill(Vector::ZERO);
         for force in &mut self.forces {
-            force.accelerate(time, &self.boundary, &self.particles, &mut self.acceleration);
+            if self.remainder.is_empty() {
+                force.accelerate(time, &self.boundary, &self.particles, &mut self.acceleration);
+            } else {
+                force.accelerate_precisely(time, &self.boundary, &self.particles, &self.remainder, &mut self.acceleration);
+            }
         }
         if extrapolate {
             std::mem::swap(&mut self.estimate, &mut self.particles.velocity);
@@ -129,6 +136,9 @@ impl<const D: usize> System<D> {
     pub(crate) fn hold(&mut self, time: f64) {
         for held in &self.held {
             held.apply(time, &mut self.particles);
+            if let Some(remainder) = self.remainder.get_mut(held.particle) {
+                remainder[held.axis] = 0.0;
+            }
         }
     }
 

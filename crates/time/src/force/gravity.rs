@@ -25,6 +25,8 @@ struct Sources<const D: usize> {
     /// `G m`.
     strength: Vec<f64>,
     position: [Vec<f64>; D],
+    /// What rounding took from the positions.
+    remainder: [Vec<f64>; D],
     acceleration: [Vec<f64>; D],
 }
 
@@ -32,7 +34,7 @@ impl<const D: usize> Gravity<D> {
     /// Gravity of the given constant `G` and softening length.
     pub fn new(constant: f64, softening: f64) -> Self {
         let empty = || std::array::from_fn(|_| vec![]);
-        let sources = Sources { index: vec![], strength: vec![], position: empty(), acceleration: empty() };
+        let sources = Sources { index: vec![], strength: vec![], position: empty(), remainder: empty(), acceleration: empty() };
         Self { constant, softening, sources }
     }
 
@@ -67,16 +69,17 @@ fn inverse_cube(r_squared: f64, softening_squared: f64) -> f64 {
 }
 
 impl<const D: usize> Sources<D> {
-    fn load(&mut self, constant: f64, particles: &Particles<D>) {
+    fn load(&mut self, constant: f64, particles: &Particles<D>, remainder: &[Vector<D>]) {
         self.index.clear();
         self.strength.clear();
-        self.position.iter_mut().for_each(Vec::clear);
+        self.position.iter_mut().chain(&mut self.remainder).for_each(Vec::clear);
         for (i, &mass) in particles.mass.iter().enumerate() {
             if mass > 0.0 {
                 self.index.push(i);
                 self.strength.push(constant * mass);
                 for k in 0..D {
                     self.position[k].push(particles.position[i][k]);
+                    self.remainder[k].push(remainder.get(i).map_or(0.0, |remainder| remainder[k]));
                 }
             }
         }
@@ -89,16 +92,15 @@ impl<const D: usize> Sources<D> {
     /// Every pair of sources once.
     fn attract_each_other(&mut self, softening_squared: f64) {
         for i in 0..self.index.len() {
-            let r: [f64; D] = std::array::from_fn(|k| self.position[k][i]);
             let mut total = [[0.0; LANES]; D];
             let mut start = i + 1;
             while start + LANES <= self.index.len() {
-                self.attract_block::<LANES>(i, r, start, softening_squared, &mut total);
+                self.attract_block::<LANES>(i, start, softening_squared, &mut total);
                 start += LANES;
             }
             for j in start..self.index.len() {
                 let mut one = [[0.0]; D];
-                self.attract_block::<1>(i, r, j, softening_squared, &mut one);
+                self.attract_block::<1>(i, j, softening_squared, &mut one);
                 for k in 0..D {
                     total[k][0] += one[k][0];
                 }
@@ -109,22 +111,16 @@ impl<const D: usize> Sources<D> {
         }
     }
 
-    /// Source `i` at `r` and the `L` sources from `start` on.
+    /// Source `i` and the `L` sources from `start` on.
     #[inline]
-    fn attract_block<const L: usize>(
-        &mut self,
-        i: usize,
-        r: [f64; D],
-        start: usize,
-        softening_squared: f64,
-        total: &mut [[f64; L]; D],
-    ) {
+    fn attract_block<const L: usize>(&mut self, i: usize, start: usize, softening_squared: f64, total: &mut [[f64; L]; D]) {
         let mut arrow = [[0.0; L]; D];
         let mut r_squared = [0.0; L];
         for k in 0..D {
-            let position = &self.position[k][start..start + L];
+            let (r, lost) = (self.position[k][i], self.remainder[k][i]);
+            let (position, remainder) = (&self.position[k][start..start + L], &self.remainder[k][start..start + L]);
             for lane in 0..L {
-                arrow[k][lane] = position[lane] - r[k];
+                arrow[k][lane] = (position[lane] - r) + (remainder[lane] - lost);
                 r_squared[lane] += arrow[k][lane] * arrow[k][lane];
             }
         }
@@ -171,10 +167,21 @@ impl<const D: usize> Force<D> for Gravity<D> {
         "gravity"
     }
 
-    fn accelerate(&mut self, _: f64, _: &Boundary<D>, particles: &Particles<D>, acceleration: &mut [Vector<D>]) {
+    fn accelerate(&mut self, time: f64, boundary: &Boundary<D>, particles: &Particles<D>, acceleration: &mut [Vector<D>]) {
+        self.accelerate_precisely(time, boundary, particles, &[], acceleration);
+    }
+
+    fn accelerate_precisely(
+        &mut self,
+        _: f64,
+        _: &Boundary<D>,
+        particles: &Particles<D>,
+        remainder: &[Vector<D>],
+        acceleration: &mut [Vector<D>],
+    ) {
         let softening_squared = self.softening * self.softening;
         let sources = &mut self.sources;
-        sources.load(self.constant, particles);
+        sources.load(self.constant, particles, remainder);
         sources.attract_each_other(softening_squared);
         for (place, &i) in sources.index.iter().enumerate() {
             acceleration[i] += Vector::from_fn(|k| sources.acceleration[k][place]);

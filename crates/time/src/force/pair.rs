@@ -97,13 +97,7 @@ impl<P: PairPotential, const D: usize> PairForce<P, D> {
 
     /// Arrows from `r` to a block of particles, and the force over the distance of each pair: zero out of range.
     #[inline]
-    fn block(
-        &self,
-        image: &NearestImage<D>,
-        range: f64,
-        r: [f64; D],
-        block: &[u32; LANES],
-    ) -> ([[f64; LANES]; D], [f64; LANES]) {
+    fn block(&self, image: &NearestImage<D>, range: f64, r: [f64; D], block: &[u32; LANES]) -> ([[f64; LANES]; D], [f64; LANES]) {
         let mut arrow = [[0.0; LANES]; D];
         let mut r_squared = [0.0; LANES];
         for k in 0..D {

@@ -72,9 +72,9 @@ impl Springs {
         particles: &'a Particles<D>,
     ) -> impl Iterator<Item = (&'a Spring, Vector<D>)> {
         let image = NearestImage::new(boundary);
-        self.springs.iter().map(move |spring| {
-            (spring, image.displacement(particles.position[spring.first], particles.position[spring.second]))
-        })
+        self.springs
+            .iter()
+            .map(move |spring| (spring, image.displacement(particles.position[spring.first], particles.position[spring.second])))
     }
 }
 

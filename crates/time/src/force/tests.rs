@@ -47,7 +47,9 @@ fn check_all<const D: usize>() {
     periodic.axes = [Axis::Periodic; D];
     let springs = (1..particles.len()).map(|i| Spring::new(i - 1, i, 0.5 + i as f64 * 0.1, 0.3 * (i % 3) as f64)).collect();
     for boundary in [&open, &periodic] {
-        // The cutoff is such that no pair of this cluster lies within `2 h` of it: the force jumps there.
+        // The force jumps at the cutoff, which therefore keeps clear of every pair's distance.
+        let apart = |i: usize, j: usize| boundary.displacement(particles.position[i], particles.position[j]).norm();
+        assert!((0..particles.len()).all(|i| (0..i).all(|j| (apart(i, j) - 2.41).abs() > 1e-3)));
         check(boundary, &particles, &mut PairForce::new(LennardJones { epsilon: 1.2, sigma: 1.0, cutoff: 2.41 }));
         check(boundary, &particles, &mut PairForce::new(WeeksChandlerAndersen::new(0.7, 1.3)));
         check(boundary, &particles, &mut Springs::new(Clone::clone(&springs)));

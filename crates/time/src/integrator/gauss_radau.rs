@@ -43,9 +43,11 @@ struct Sum<const D: usize> {
 
 impl<const D: usize> Sum<D> {
     fn add(&mut self, increment: Vector<D>) {
-        let corrected = increment + self.lost;
-        let sum = self.value + corrected;
-        self.lost = corrected - (sum - self.value);
+        let increment = increment + self.lost;
+        let sum = self.value + increment;
+        // What was lost, whichever of the two is larger (Knuth 1969).
+        let taken = sum - self.value;
+        self.lost = (self.value - (sum - taken)) + (increment - taken);
         self.value = sum;
     }
 }
@@ -80,7 +82,7 @@ impl<const D: usize> GaussRadau<D> {
     }
 
     /// Forgets the past: the next step starts from the system as it is at `time`.
-    pub(crate) fn restart(&mut self, system: &System<D>, time: f64) {
+    pub(crate) fn restart(&mut self, system: &mut System<D>, time: f64) {
         let zero = [Vector::ZERO; ORDER];
         let exact = |value| Sum { value, lost: Vector::ZERO };
         self.bodies.clear();
@@ -95,6 +97,8 @@ impl<const D: usize> GaussRadau<D> {
             last_predicted: zero,
         }));
         self.after.clear();
+        system.remainder.clear();
+        system.remainder.resize(self.bodies.len(), Vector::ZERO);
         self.start = time;
         self.taken = 0.0;
         self.end = Sum { value: Vector([time]), lost: Vector([0.0]) };
@@ -251,9 +255,11 @@ impl<const D: usize> GaussRadau<D> {
             }
             last_change = change;
         }
-        let (last_term, scale) = self.bodies.iter().zip(&system.acceleration).fold((0.0, 0.0), |(term, scale), (body, &a)| {
-            (largest(term, body.b[ORDER - 1]), largest(scale, a))
-        });
+        let (last_term, scale) = self
+            .bodies
+            .iter()
+            .zip(&system.acceleration)
+            .fold((0.0, 0.0), |(term, scale), (body, &a)| (largest(term, body.b[ORDER - 1]), largest(scale, a)));
         if scale == 0.0 { 0.0 } else { last_term / scale }
     }
 
@@ -265,9 +271,12 @@ impl<const D: usize> GaussRadau<D> {
     fn place_within(&self, system: &mut System<D>, h: f64, dt: f64) {
         for (i, body) in self.bodies.iter().enumerate() {
             let (dr, dv) = increments(body, dt, h);
-            let position = body.position.value + (body.position.lost + (body.velocity.value * (h * dt) + dr));
-            system.set_unwrapped(i, position);
-            system.particles.velocity[i] = body.velocity.value + (body.velocity.lost + dv);
+            let (v, lost) = (body.velocity.value, body.velocity.lost);
+            let mut position = body.position;
+            position.add(v * (h * dt) + (lost * (h * dt) + dr));
+            system.set_unwrapped(i, position.value);
+            system.remainder[i] = position.lost;
+            system.particles.velocity[i] = v + (lost + dv);
         }
         system.fresh = false;
     }

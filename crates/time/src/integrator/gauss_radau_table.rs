@@ -106,4 +106,31 @@ mod tests {
             assert!((back - g[k]).abs() < 50.0 * f64::EPSILON);
         }
     }
+
+    /// The integral over the step of a force `h^d` sampled at the nodes is `1/(d + 1)` for `d <= 14` and no further: eight
+    /// Radau nodes make a quadrature of degree 14, hence a method of order 15 (Butcher 1964, doi:10.1090/S0025-5718-1964-0159424-9).
+    #[test]
+    fn the_quadrature_has_degree_fourteen() {
+        let table = Table::new();
+        let integral = |degree: i32| {
+            let mut g = [0.0; ORDER];
+            for n in 1..=ORDER {
+                let sample = NODES[n].powi(degree) - NODES[0].powi(degree);
+                g[n - 1] = (1..n).fold(sample * table.inverse_gap[n][0], |g_n, m| (g_n - g[m - 1]) * table.inverse_gap[n][m]);
+            }
+            let b = |k: usize| (k..ORDER).map(|j| g[j] * table.power_from_newton[j][k]).sum::<f64>();
+            NODES[0].powi(degree) + (0..ORDER).map(|k| b(k) / (k as f64 + 2.0)).sum::<f64>()
+        };
+        // Differences divided by the smallest gaps lose up to three digits.
+        let rounding = 1e3 * f64::EPSILON;
+        for degree in 0..=14 {
+            assert!((integral(degree) - 1.0 / f64::from(degree + 1)).abs() < rounding, "{degree}: {}", integral(degree));
+        }
+        // The error at degree 15 is the integral of h (h - h_1)^2 ... (h - h_7)^2, of order 1e-9.
+        let node_polynomial = |h: f64| NODES[1..].iter().fold(h, |product, node| product * (h - node) * (h - node));
+        let expected = (0..100_000).map(|i| node_polynomial((f64::from(i) + 0.5) * 1e-5)).sum::<f64>() * 1e-5;
+        let error = 1.0 / 16.0 - integral(15);
+        println!("{error:e} {expected:e}");
+        assert!((error - expected).abs() < rounding && expected > 10.0 * rounding, "{error:e} against {expected:e}");
+    }
 }

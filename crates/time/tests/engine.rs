@@ -1,0 +1,161 @@
+//! The engine's contract: bits, walls, edits, refusals.
+
+use std::ops::ControlFlow;
+
+use corpuscle_core::{Axis, Boundary, Contact, Engine, Meeting, Observer, Particles, Partition, Random, Vector};
+use corpuscle_time::{Force, Gravity, Integrator, PairForce, TimeDriven, UniformField, WeeksChandlerAndersen};
+
+#[derive(Default)]
+struct Contacts(Vec<Contact<2>>);
+
+impl Observer<2> for Contacts {
+    fn contact(&mut self, contact: &Contact<2>) -> ControlFlow<()> {
+        self.0.push(*contact);
+        ControlFlow::Continue(())
+    }
+}
+
+fn one(position: [f64; 2], velocity: [f64; 2]) -> Particles<2> {
+    let mut particles = Particles::new();
+    particles.push(Vector(position), Vector(velocity), 2.0, 0.5, 0);
+    particles
+}
+
+fn room(axis: Axis) -> Boundary<2> {
+    Boundary::new([0.0; 2], [10.0, 4.0], axis)
+}
+
+#[test]
+fn where_callers_stop_does_not_change_a_bit() {
+    for name in Integrator::NAMES {
+        let engine = || {
+            let mut random = Random::new(1, 0);
+            let mut particles = Particles::<3>::new();
+            for i in 0..27 {
+                let site = Vector::from_fn(|k| 1.2 * (i / 3usize.pow(k as u32) % 3) as f64 + 0.1 * random.uniform());
+                particles.push(site, Vector::from_fn(|_| random.normal()), 1.0, 0.0, 0);
+            }
+            let forces: Vec<Box<dyn Force<3>>> =
+                vec![Box::new(PairForce::new(WeeksChandlerAndersen::new(1.0, 1.0))), Box::new(Gravity::new(0.5, 0.1))];
+            let space = Boundary::new([0.0; 3], [4.0; 3], Axis::Open);
+            TimeDriven::new(space, particles, forces, Integrator::from_name(name, 0.01).unwrap()).unwrap()
+        };
+        let (mut whole, mut pieces) = (engine(), engine());
+        whole.advance(1.0, &mut ()).unwrap();
+        for piece in 1..=997 {
+            pieces.advance(f64::from(piece) / 997.0, &mut ()).unwrap();
+            let _ = (pieces.energy(), pieces.virial(), pieces.snapshot());
+        }
+        assert_eq!(whole.time(), 1.0);
+        assert_eq!((whole.snapshot(), whole.steps(), whole.time()), (pieces.snapshot(), pieces.steps(), pieces.time()), "{name}");
+    }
+}
+
+/// `advance` takes whole steps only; sums of the caller's that fall short by rounding do not lose one.
+#[test]
+fn whole_steps_only() {
+    let mut engine =
+        TimeDriven::new(room(Axis::Open), one([1.0; 2], [1.0, 0.0]), vec![], Integrator::VelocityVerlet { dt: 0.1 }).unwrap();
+    engine.advance(0.25, &mut ()).unwrap();
+    assert_eq!((engine.steps(), engine.time()), (2, 0.2));
+    let mut to = 0.2;
+    for _ in 0..1000 {
+        to += 0.1;
+        engine.advance(to, &mut ()).unwrap();
+    }
+    assert_eq!(engine.steps(), 1002);
+}
+
+/// Free flight between walls: the contacts' times, places and impulses are known.
+#[test]
+fn walls_reflect_and_report_their_impulse() {
+    let mut engine =
+        TimeDriven::new(room(Axis::Walls), one([2.0, 2.0], [3.0, 0.0]), vec![], Integrator::VelocityVerlet { dt: 0.01 }).unwrap();
+    let mut contacts = Contacts::default();
+    engine.advance(9.0, &mut contacts).unwrap();
+    // The centre has 9 to go between the walls, 7.5 to the first.
+    let expected: Vec<f64> = (0..3).map(|k| (7.5 + 9.0 * f64::from(k)) / 3.0).collect();
+    assert_eq!(contacts.0.len(), 3);
+    for (number, (contact, time)) in contacts.0.iter().zip(expected).enumerate() {
+        assert!((contact.time - time).abs() < 900.0 * 10.0 * f64::EPSILON, "{} against {time}", contact.time);
+        assert_eq!(contact.with, Meeting::Face { axis: 0, upper: number % 2 == 0 });
+        assert_eq!(contact.impulse, 12.0);
+        assert_eq!(contact.normal[0], if number % 2 == 0 { 1.0 } else { -1.0 });
+        assert_eq!(contact.first.position[0], if number % 2 == 0 { 9.5 } else { 0.5 });
+        assert_eq!(contact.first.after, -contact.first.before);
+    }
+    assert_eq!(engine.kinetic_energy(), 9.0);
+}
+
+/// A ball on a floor in a uniform field: Verlet's drifts are reflected exactly, so its energy stays bounded; the bounce takes
+/// `2 v / g`.
+#[test]
+fn a_ball_bounces_for_ever() {
+    let field: Box<dyn Force<2>> = Box::new(UniformField::new(Vector([0.0, -1.0])));
+    let mut engine =
+        TimeDriven::new(room(Axis::Walls), one([5.0, 2.5], [0.0, 0.0]), vec![field], Integrator::VelocityVerlet { dt: 0.001 })
+            .unwrap();
+    let energy = engine.energy();
+    let mut contacts = Contacts::default();
+    engine.advance(200.0, &mut contacts).unwrap();
+    // Falls 2 (the radius is taken off): v = 2, first contact at 2, then one every 4.
+    assert_eq!(contacts.0.len(), 50);
+    // A bounce within a step misses at most the kick of the field over that step, 2 m g v dt, once and not cumulatively.
+    assert!((engine.energy() - energy).abs() < 2.0 * 2.0 * 1.0 * 2.0 * 0.001, "{}", engine.energy() - energy);
+}
+
+#[test]
+fn a_particle_faster_than_the_box_is_wide_is_a_failure() {
+    let mut engine =
+        TimeDriven::new(room(Axis::Walls), one([5.0, 2.0], [1.0, 1e4]), vec![], Integrator::VelocityVerlet { dt: 0.01 }).unwrap();
+    let failure = engine.advance(1.0, &mut ()).unwrap_err();
+    assert!(failure.to_string().contains("particle 0") && failure.cause.contains("smaller dt"), "{failure}");
+    assert_eq!((engine.time(), engine.particles()), (0.0, &one([5.0, 2.0], [1.0, 1e4])));
+}
+
+#[test]
+fn an_observer_can_stop_the_run() {
+    struct Stop;
+    impl Observer<2> for Stop {
+        fn contact(&mut self, _: &Contact<2>) -> ControlFlow<()> {
+            ControlFlow::Break(())
+        }
+    }
+    let mut engine =
+        TimeDriven::new(room(Axis::Walls), one([5.0, 2.0], [1.0, 0.0]), vec![], Integrator::VelocityVerlet { dt: 0.1 }).unwrap();
+    engine.advance(100.0, &mut Stop).unwrap();
+    assert!((engine.time() - 4.5).abs() <= 0.1 + 1e-12, "{}", engine.time());
+}
+
+#[test]
+fn edits_are_checked_and_undone_when_refused() {
+    let mut engine =
+        TimeDriven::new(room(Axis::Walls), one([5.0, 2.0], [1.0, 0.0]), vec![], Integrator::VelocityVerlet { dt: 0.1 }).unwrap();
+    engine.advance(1.0, &mut ()).unwrap();
+    let before = engine.snapshot();
+    assert!(engine.edit(|particles| particles.position[0][1] = 3.9).unwrap_err().key.contains("particle 0"));
+    assert!(engine.edit(|particles| particles.velocity[0][1] = f64::NAN).unwrap_err().key.contains("velocity"));
+    assert_eq!(engine.snapshot(), before);
+    assert!(engine.set_boundary(Boundary::new([0.0; 2], [5.0, 4.0], Axis::Walls)).is_err());
+    assert_eq!(engine.boundary(), &room(Axis::Walls));
+    engine.edit(|particles| _ = particles.push(Vector([1.0, 1.0]), Vector::ZERO, 1.0, 0.5, 0)).unwrap();
+    engine.advance(2.0, &mut ()).unwrap();
+    assert_eq!(engine.particles().len(), 2);
+}
+
+#[test]
+fn systems_that_make_no_sense_are_refused() {
+    let new = |boundary: Boundary<2>, particles, name, dt| {
+        let integrator = Integrator::from_name(name, dt)?;
+        TimeDriven::new(boundary, particles, vec![], integrator).map(|_| ())
+    };
+    let verlet = "velocity-verlet";
+    assert_eq!(new(room(Axis::Open), Particles::new(), verlet, 0.1).unwrap_err().key, "particles");
+    assert_eq!(new(room(Axis::Open), one([1.0; 2], [f64::INFINITY; 2]), verlet, 0.1).unwrap_err().key, "velocity of particle 0");
+    assert_eq!(new(room(Axis::Walls), one([0.1, 2.0], [0.0; 2]), verlet, 0.1).unwrap_err().key, "position of particle 0");
+    assert_eq!(new(room(Axis::Open), one([1.0; 2], [0.0; 2]), verlet, f64::NAN).unwrap_err().key, "dt");
+    assert_eq!(new(room(Axis::Walls), one([1.0; 2], [0.0; 2]), "gauss-radau-15", 0.1).unwrap_err().key, "integrator");
+    let mut divided = room(Axis::Walls);
+    divided.partitions.push(Partition { axis: 0, position: 5.0, hole: None });
+    assert_eq!(new(divided, one([1.0; 2], [0.0; 2]), verlet, 0.1).unwrap_err().key, "partitions");
+}

@@ -1,0 +1,135 @@
+//! Soft spheres: conservation, images, and independence of the neighbour lists over whole runs.
+
+use corpuscle_core::{Axis, Boundary, Engine, Particles, Random, Vector, placement};
+use corpuscle_time::{Force, Gravity, Integrator, LennardJones, PairForce, Spring, Springs, TimeDriven, WeeksChandlerAndersen};
+use proptest::prelude::*;
+
+const LENNARD_JONES: LennardJones = LennardJones { epsilon: 1.0, sigma: 1.0, cutoff: 2.5 };
+
+fn fluid<const D: usize>(count: usize, density: f64, force: Box<dyn Force<D>>, dt: f64, seed: u64) -> TimeDriven<D> {
+    let boundary = Boundary::periodic((count as f64 / density).powf(1.0 / D as f64));
+    let mut random = Random::new(seed, 0);
+    let mut particles = Particles::new();
+    for place in placement::lattice(&boundary, count, 0.0, &mut random, |_| true).unwrap() {
+        particles.push(place, Vector::ZERO, 1.0, 0.5, 0);
+    }
+    placement::maxwell(&mut particles, 1.0, true, &mut random);
+    TimeDriven::new(boundary, particles, vec![force], Integrator::VelocityVerlet { dt }).unwrap()
+}
+
+/// In each run the energy is averaged over ten stretches, and a line is fitted through them. Over eight independent runs the
+/// slope must be zero within its standard error: |z| < 4 fails once in 16,000 by chance.
+#[test]
+fn energy_of_a_fluid_does_not_drift() {
+    let slopes: Vec<f64> = (0..8)
+        .map(|seed| {
+            let dt = 0.004;
+            let mut engine = fluid::<3>(108, 0.6, Box::new(PairForce::new(WeeksChandlerAndersen::new(1.0, 1.0))), dt, seed);
+            engine.advance(4.0, &mut ()).unwrap();
+            let means: Vec<f64> = (0..10)
+                .map(|stretch| {
+                    let mean = (0..50).map(|sample| {
+                        engine.advance(4.0 + (f64::from(stretch * 50 + sample) + 1.0) * 10.0 * dt, &mut ()).unwrap();
+                        engine.energy()
+                    });
+                    mean.sum::<f64>() / 50.0
+                })
+                .collect();
+            let mean = means.iter().sum::<f64>() / 10.0;
+            means.iter().enumerate().map(|(i, e)| (i as f64 - 4.5) * (e - mean)).sum::<f64>() / 82.5
+        })
+        .collect();
+    let mean = slopes.iter().sum::<f64>() / 8.0;
+    let error = (slopes.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / (7.0 * 8.0)).sqrt();
+    println!("slope {mean:.2e} +- {error:.2e} a stretch of 2 time units");
+    // Student's t with 7 degrees of freedom: |t| > 5.4 has probability 0.001.
+    assert!(mean.abs() < 5.4 * error, "{mean:e} +- {error:e}");
+}
+
+/// The trajectory's bits do not depend on the skin of the neighbour list, nor on when it was built.
+#[test]
+fn whole_runs_do_not_depend_on_the_neighbour_list() {
+    let run = |skin: f64| {
+        let mut engine = fluid::<3>(256, 0.7, Box::new(PairForce::with_skin(LENNARD_JONES, skin)), 0.004, 5);
+        engine.advance(2.0, &mut ()).unwrap();
+        (engine.snapshot(), engine.energy(), engine.virial())
+    };
+    let tight = run(0.05);
+    assert_eq!(tight, run(0.4));
+    assert_eq!(tight, run(50.0));
+}
+
+/// A bound pair that drifts through the faces of a periodic box moves as in open space. Every step rounds positions and
+/// forces; in a bound orbit such errors grow in proportion to time, so that `n` steps leave `n^2` roundings at worst.
+#[test]
+fn a_pair_crossing_the_boundary_moves_as_in_open_space() {
+    let (side, dt, steps) = (6.0, 0.002, 5000u32);
+    let run = |axis| {
+        let mut pair = Particles::<2>::new();
+        pair.push(Vector([5.5, 0.3]), Vector([0.9, -1.3]), 1.0, 0.0, 0);
+        pair.push(Vector([6.6, 0.3]), Vector([0.9, -1.1]), 2.0, 0.0, 0);
+        let boundary = Boundary::new([0.0; 2], [side; 2], axis);
+        let force: Box<dyn Force<2>> = Box::new(PairForce::new(LENNARD_JONES));
+        let mut engine = TimeDriven::new(boundary, pair, vec![force], Integrator::VelocityVerlet { dt }).unwrap();
+        engine.advance(f64::from(steps) * dt, &mut ()).unwrap();
+        engine
+    };
+    let (open, periodic) = (run(Axis::Open), run(Axis::Periodic));
+    let bound = f64::from(steps).powi(2) * f64::EPSILON * 2.0 * side;
+    for i in 0..2 {
+        // The second starts outside, is brought in by one side, and keeps count of it.
+        let off = (periodic.unwrapped(i) - open.particles().position[i]).norm();
+        assert!(off < bound, "particle {i}: {off:e} against {bound:e}");
+        assert_ne!(periodic.images(i), [0, 0]);
+    }
+    assert!((open.energy() - periodic.energy()).abs() < bound);
+}
+
+/// Virial and energy: `W = -dU/d ln(scale)`, the pressure route, by central differences of the scaled system.
+#[test]
+fn the_virial_is_the_response_of_the_energy_to_scaling() {
+    let mut engine = fluid::<2>(100, 0.6, Box::new(PairForce::new(WeeksChandlerAndersen::new(1.0, 1.0))), 0.004, 2);
+    engine.advance(1.0, &mut ()).unwrap();
+    let energy = |scale: f64| {
+        let mut boundary = engine.boundary().clone();
+        (boundary.lower, boundary.upper) = (boundary.lower * scale, boundary.upper * scale);
+        let mut particles = engine.snapshot();
+        particles.position.iter_mut().for_each(|r| *r = *r * scale);
+        let force = PairForce::<_, 2>::new(WeeksChandlerAndersen::new(1.0, 1.0));
+        force.energy(0.0, &boundary, &particles)
+    };
+    let slope = |h: f64| (energy(1.0 + h) - energy(1.0 - h)) / (2.0 * h);
+    // Truncation, measured by doubling the difference, and rounding.
+    let bound = (slope(2e-5) - slope(1e-5)).abs() + 100.0 * f64::EPSILON * energy(1.0) / 1e-5;
+    assert!((engine.virial() + slope(1e-5)).abs() <= bound, "{} against {}", engine.virial(), -slope(1e-5));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    /// Forces between particles add no momentum. Each step rounds every particle's velocity, of at most `v`, once a force.
+    #[test]
+    fn momentum_is_conserved(seed in any::<u64>(), kind in 0..4usize, integrator in 0..5usize, periodic in any::<bool>()) {
+        let mut random = Random::new(seed, 0);
+        let mut particles = Particles::<3>::new();
+        for i in 0..64 {
+            let site = Vector::from_fn(|k| 0.5 + 1.4 * (i / 4usize.pow(k as u32) % 4) as f64 + 0.2 * random.uniform());
+            particles.push(site, Vector::from_fn(|_| random.normal()), 0.5 + random.uniform(), 0.0, 0);
+        }
+        let force: Box<dyn Force<3>> = match kind {
+            0 => Box::new(PairForce::new(LennardJones { cutoff: 2.4, ..LENNARD_JONES })),
+            1 => Box::new(PairForce::new(WeeksChandlerAndersen::new(1.0, 1.0))),
+            2 => Box::new(Springs::new((1..64).map(|i| Spring { damping: 0.1, ..Spring::new(i / 2, i, 2.0, 0.8) }).collect())),
+            _ => Box::new(Gravity::new(0.1, 0.3)),
+        };
+        let axis = if periodic && kind != 3 { Axis::Periodic } else { Axis::Open };
+        let boundary = Boundary::new([0.0; 3], [5.6; 3], axis);
+        let integrator = Integrator::from_name(Integrator::NAMES[integrator], 0.001).unwrap();
+        let mut engine = TimeDriven::new(boundary, particles, vec![force], integrator).unwrap();
+        let before = engine.momentum();
+        engine.advance(0.2, &mut ()).unwrap();
+        let scale: f64 = engine.particles().velocity.iter().zip(&engine.particles().mass).map(|(v, m)| m * v.norm()).sum();
+        let bound = engine.steps() as f64 * 4.0 * f64::EPSILON * scale;
+        prop_assert!((engine.momentum() - before).norm() < bound, "{:?}", engine.momentum() - before);
+    }
+}
