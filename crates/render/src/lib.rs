@@ -1,7 +1,8 @@
 //! OpenGL drawing of a [`corpuscle_scene::Scene`], in a window or with none.
 //!
 //! - [`Renderer`] draws into whatever frame buffer is bound: a host with its own window (an egui application) uses it.
-//! - [`Headless`] draws into memory without a screen, and gives [`Picture`]s.
+//! - [`window::view`] opens a plain window (with the feature `window`).
+//! - [`Headless`] draws into memory without a screen, and gives [`Picture`]s; [`Clip`] collects them in a film.
 //!
 //! One GLSL source serves OpenGL 3.3 and OpenGL ES 3.0. Bodies are moved to the scene's time in the vertex shader.
 
@@ -11,12 +12,15 @@ mod error;
 mod gl;
 mod headless;
 mod layers;
+pub mod navigate;
 mod overlay;
 mod picture;
 mod platform;
 mod projection;
 mod renderer;
 mod view;
+#[cfg(feature = "window")]
+pub mod window;
 
 pub use clip::Clip;
 pub use error::RenderError;

@@ -36,6 +36,9 @@ impl Mp4 {
             .intra_frame_period(IntraFramePeriod::from_num_frames((2.0 * fps).ceil().clamp(1.0, 600.0) as u32))
             .num_threads(1) // the same bytes on every machine
             .usage_type(UsageType::ScreenContentRealTime)
+            // Neither exists for drawn content, and the encoder would say so on the terminal.
+            .adaptive_quantization(false)
+            .background_detection(false)
             // How `YUVBuffer` converts: ITU-R BT.601 in the limited range.
             .vui(VuiConfig::bt601());
         let encoder =

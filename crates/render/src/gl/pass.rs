@@ -39,6 +39,8 @@ pub(crate) fn begin_frame(gl: &Gl, viewport: Viewport, ground: [f32; 3]) {
         gl.clear_color(red, green, blue, 1.0);
         gl.clear_depth_f32(1.0);
         gl.clear(glow::COLOR_BUFFER_BIT | glow::DEPTH_BUFFER_BIT);
+        // The picture stays opaque, whatever is painted on it.
+        gl.color_mask(true, true, true, false);
     }
 }
 
@@ -50,6 +52,7 @@ pub(crate) fn end_frame(gl: &Gl) {
         gl.disable(glow::DEPTH_TEST);
         gl.disable(glow::BLEND);
         gl.depth_mask(true);
+        gl.color_mask(true, true, true, true);
         gl.use_program(None);
     }
 }
@@ -65,8 +68,7 @@ impl Pass {
             gl.depth_mask(self == Self::Solid);
             gl.depth_func(glow::LEQUAL);
             gl.blend_equation(glow::FUNC_ADD);
-            // The picture stays opaque, whatever is painted on it.
-            gl.blend_func_separate(glow::SRC_ALPHA, glow::ONE_MINUS_SRC_ALPHA, glow::ONE, glow::ONE_MINUS_SRC_ALPHA);
+            gl.blend_func(glow::SRC_ALPHA, glow::ONE_MINUS_SRC_ALPHA);
         }
     }
 }

@@ -73,7 +73,9 @@ impl Bodies {
         } else {
             Pass::Paint.begin(gl);
             self.disc.set("u_scale", space.projection.scale as f32);
-            self.disc.set("u_outline", space.palette.ground());
+            self.disc.set("u_ground", space.palette.ground());
+            let [r, g, b, _] = space.palette.rgba(Colour::Ink);
+            self.disc.set("u_ink", [r, g, b]);
             &self.disc
         };
         program.set("u_field", scene.field.map(|g| g as f32));
@@ -154,28 +156,23 @@ fn colour(program: &Program, colouring: &Colouring, palette: Palette) {
         let [r, g, b, _] = palette.rgba(colour);
         [r, g, b]
     };
-    let continuous = |least: f64, most: f64| {
-        let knots: [[f32; 3]; 11] = std::array::from_fn(|k| viridis(k as f64 / 10.0).map(|c| c as f32));
-        program.set("u_map", &knots[..]);
-        program.set("u_colours", 11);
-        let extent = most - least;
-        program.set("u_range", [least as f32, if extent > 0.0 { (1.0 / extent) as f32 } else { 0.0 }]);
+    let (map, range): (Vec<[f32; 3]>, Option<[f64; 2]>) = match colouring {
+        // One colour for all: whatever the shade is, its remainder is 0.
+        Colouring::Uniform(colour) => (vec![plain(*colour)], None),
+        Colouring::Species(_) => ((0..8).map(|index| plain(Colour::Accent(index))).collect(), None),
+        Colouring::Speed { most, .. } => (viridis_knots(), Some([0.0, *most])),
+        Colouring::Value { least, most, .. } => (viridis_knots(), Some([*least, *most])),
     };
-    let map: Vec<[f32; 3]> = match colouring {
-        Colouring::Uniform(colour) => vec![plain(*colour)],
-        Colouring::Species(_) => (0..8).map(|index| plain(Colour::Accent(index))).collect(),
-        Colouring::Speed { most, .. } => return by_scale(program, true, || continuous(0.0, *most)),
-        Colouring::Value { least, most, .. } => return by_scale(program, false, || continuous(*least, *most)),
-    };
-    program.set("u_by_speed", 0);
-    program.set("u_continuous", 0);
     program.set("u_map", &map[..]);
-    // One colour for all: whatever the shade is, its remainder is 0.
     program.set("u_colours", map.len() as i32);
+    program.set("u_by_speed", i32::from(matches!(colouring, Colouring::Speed { .. })));
+    program.set("u_continuous", i32::from(range.is_some()));
+    if let Some([least, most]) = range {
+        let per_extent = if most > least { 1.0 / (most - least) } else { 0.0 };
+        program.set("u_range", [least as f32, per_extent as f32]);
+    }
 }
 
-fn by_scale(program: &Program, by_speed: bool, set_scale: impl FnOnce()) {
-    program.set("u_by_speed", i32::from(by_speed));
-    program.set("u_continuous", 1);
-    set_scale();
+fn viridis_knots() -> Vec<[f32; 3]> {
+    (0..=10).map(|knot| viridis(f64::from(knot) / 10.0).map(|c| c as f32)).collect()
 }

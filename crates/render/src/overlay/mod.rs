@@ -204,6 +204,6 @@ fn scale_bar(sheet: &mut Sheet, m: Measures, palette: Palette, projection: &Proj
     sheet.fill(Rectangle { left, top: y - hair, width, height: hair }, colour);
     sheet.fill(Rectangle { left, top: y - end, width: hair, height: end - hair }, colour);
     sheet.fill(Rectangle { left: left + width - hair, top: y - end, width: hair, height: end - hair }, colour);
-    let place = [left + 0.5 * width, y - m.points(6.0)];
+    let place = [left + 0.5 * width, y - m.points(7.0)];
     sheet.text(&short(length), m.small(), place, Align::Middle, palette.rgba(Colour::Ink));
 }

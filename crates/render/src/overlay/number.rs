@@ -12,18 +12,22 @@ fn power_of_ten(exponent: f64) -> f64 {
     format!("1e{exponent}").parse().unwrap_or(1.0)
 }
 
-/// Round values from `least` to `most`, three to six of them.
+/// Round values from `least` to `most`: as few as possible, but three.
 pub(crate) fn ticks(least: f64, most: f64) -> Vec<f64> {
     let extent = most - least;
     if !(extent.is_finite() && extent > 0.0) {
         return vec![least];
     }
-    let step = one_two_five_below(extent / 2.0 * (1.0 + 1e-9));
-    // Two steps fit at least; a finer step that still gives few ticks reads better.
-    let step = [step / 2.0, step].into_iter().map(one_two_five_below).find(|s| extent / s <= 5.0 + 1e-9).unwrap_or(step);
-    let first = (least / step - 1e-9).ceil() as i64;
-    let last = (most / step + 1e-9).floor() as i64;
-    (first..=last).map(|n| n as f64 * step).collect()
+    let mut step = one_two_five_below(extent);
+    loop {
+        let first = (least / step - 1e-9).ceil();
+        let last = (most / step + 1e-9).floor();
+        // Values so near to each other that rounding has taken their steps end here too.
+        if last - first >= 2.0 || step < 1e-3 * extent {
+            return (0..=(last - first) as usize).map(|n| (first + n as f64) * step).collect();
+        }
+        step = one_two_five_below(0.7 * step);
+    }
 }
 
 /// The power of ten to be taken out of values up to `most`, 0 when they read well as they are.
@@ -92,14 +96,14 @@ mod tests {
     }
 
     #[test]
-    fn a_scale_has_three_to_six_round_ticks() {
+    fn a_scale_has_a_few_round_ticks() {
         assert_eq!(ticks(0.0, 3.0), [0.0, 1.0, 2.0, 3.0]);
-        assert_eq!(ticks(-1.0, 1.0), [-1.0, -0.5, 0.0, 0.5, 1.0]);
+        assert_eq!(ticks(-1.0, 1.0), [-1.0, 0.0, 1.0]);
         let mut most = 1.0;
         while most < 1000.0 {
             for least in [0.0, -0.3 * most] {
                 let n = ticks(least, most).len();
-                assert!((3..=6).contains(&n), "{least} to {most}: {n} ticks");
+                assert!((3..=8).contains(&n), "{least} to {most}: {n} ticks");
             }
             most *= 1.07;
         }

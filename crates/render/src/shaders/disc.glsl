@@ -15,14 +15,22 @@ void main() {
     gl_Position = clip + vec4(2.0 * v_place / u_frame, 0.0, 0.0);
 }
 #else
-uniform vec3 u_outline;             // what the outline is mixed with
+uniform vec3 u_ground;
+uniform vec3 u_ink;
 out vec4 colour;
+
+// Darker than the body; where the body is hard to tell from the ground, nearer to the ink instead.
+vec3 outline_of(vec3 body) {
+    vec3 luma = vec3(0.299, 0.587, 0.114);
+    float contrast = abs(dot(luma, body - u_ground));
+    return mix(mix(body, u_ink, 0.45), 0.55 * body, smoothstep(0.10, 0.30, contrast));
+}
 
 void main() {
     float inside = v_radius - length(v_place);
     float coverage = clamp(inside + 0.5, 0.0, 1.0);
     float width = min(1.25 * u_point, 0.22 * v_radius);
-    float outline = 0.5 * clamp(width - inside + 0.5, 0.0, 1.0) * smoothstep(1.5, 4.0, v_radius / u_point);
-    colour = vec4(mix(v_colour.rgb, u_outline, outline), v_colour.a * coverage);
+    float outline = clamp(width - inside + 0.5, 0.0, 1.0) * smoothstep(1.5, 4.0, v_radius / u_point);
+    colour = vec4(mix(v_colour.rgb, outline_of(v_colour.rgb), outline), v_colour.a * coverage);
 }
 #endif

@@ -51,7 +51,7 @@ void main() {
     float facing = max(-dot(normal, ray), 0.0);
     float light = max(dot(normal, vec3(-0.42, 0.62, 0.66)), 0.0);
     float gloss = pow(max(dot(normal, normalize(vec3(-0.42, 0.62, 0.66) - ray)), 0.0), 48.0);
-    vec3 shaded = v_colour * (0.40 + 0.16 * normal.y + 0.58 * light) * mix(0.62, 1.0, smoothstep(0.0, 0.45, facing));
+    vec3 shaded = v_colour * (0.47 + 0.13 * normal.y + 0.54 * light) * mix(0.62, 1.0, smoothstep(0.0, 0.45, facing));
     shaded += 0.22 * gloss;
     float haze = 0.55 * clamp((-hit.z - u_haze.x) * u_haze.y, 0.0, 1.0);
     colour = vec4(mix(shaded, u_ground, haze), coverage);
