@@ -2,11 +2,17 @@
 
 mod brownian;
 mod hard_spheres;
+mod waves;
 
 pub use brownian::{
     closed_box_displacement, diffusion_coefficient, initial_friction, ornstein_uhlenbeck_displacement,
     ornstein_uhlenbeck_velocity_correlation,
 };
 pub use hard_spheres::{
-    collision_rate, compressibility, contact_value, mean_free_path, mean_speed, packing_fraction, speed_through_hole, wall_hit_rate,
+    collision_rate, compressibility, contact_value, mean_free_path, mean_speed, packing_fraction, reduced_compressibility,
+    speed_through_hole, wall_hit_rate,
+};
+pub use waves::{
+    chain_dispersion, chain_energy_reflection, chain_group_velocity, chain_wave_number, long_wave_speed, membrane_frequency,
+    reflection, transmission, verlet_frequency,
 };
