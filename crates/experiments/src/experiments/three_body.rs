@@ -1,0 +1,328 @@
+//! Three stars, and dust among them: orbits that return, orbits that never do, and what a tenth of a unit changes.
+
+mod conservation;
+mod dust;
+mod fate;
+mod orders;
+mod picture;
+mod report;
+mod start;
+mod triangle;
+
+use std::collections::VecDeque;
+
+use corpuscle_core::{Engine, Failure, Invalid};
+use corpuscle_observe::{Chart, Check};
+use corpuscle_scene::Scene;
+use corpuscle_time::Integrator;
+
+use crate::{Experiment, Honesty, Kind, Parameter, Settings, Simulation, Table, ensemble};
+use conservation::{Frame, Run};
+use dust::Parting;
+use fate::Fate;
+use orders::Orders;
+use start::{PRECISE, Start};
+use triangle::Triangle;
+
+/// Three stars and dust.
+pub static EXPERIMENT: Experiment = Experiment {
+    name: "three-body",
+    title: "Three stars and dust",
+    summary: "Gravity among three stars and dust grains: orbits that return, orbits that fly apart, and how small \
+              differences of the start grow; energy, momentum and the order of every integrator are measured beside.",
+    dimensions: &[2],
+    engines: &["time-driven"],
+    parameters: PARAMETERS,
+    start: |settings| Ok(Box::new(ThreeBody::new(settings)?)),
+};
+
+const PARAMETERS: &[Parameter] = &[
+    Parameter {
+        name: "preset",
+        unit: "",
+        help: "Start: three stars and dust, the figure-eight, Lagrange's turning triangle, or Burrau's Pythagorean problem.",
+        kind: Kind::Choice { default: "paper", options: &["paper", "figure-eight", "lagrange", "pythagorean"] },
+    },
+    Parameter {
+        name: "integrator",
+        unit: "",
+        help: "Rule that advances time; gauss-radau-15 chooses its own steps and is exact to rounding.",
+        kind: Kind::Choice { default: "gauss-radau-15", options: &Integrator::NAMES },
+    },
+    Parameter {
+        name: "time_step",
+        unit: "",
+        help: "Longest step of a fixed-step integrator; shortened so that a whole number of steps makes a sampling interval.",
+        kind: Kind::Real { default: 0.001, least: 1e-6, most: 1.0 },
+    },
+    Parameter {
+        name: "masses",
+        unit: "",
+        help: "Masses of the three stars; empty: those of the preset.",
+        kind: Kind::List { default: &[], least: 1e-9, most: 1e6, longest: 3 },
+    },
+    Parameter {
+        name: "grains",
+        unit: "",
+        help: "Number of dust grains, each with two unseen twins; unless given 24 (paper), 12 (lagrange) or none.",
+        kind: Kind::Whole { default: 24, least: 0, most: 1000 },
+    },
+    Parameter {
+        name: "grain_spacing",
+        unit: "",
+        help: "Difference between the starts of neighbouring grains, in one coordinate.",
+        kind: Kind::Real { default: 0.1, least: 1e-12, most: 10.0 },
+    },
+    Parameter {
+        name: "softening",
+        unit: "",
+        help: "Plummer's softening length of gravity; unless given 0.2 (paper) or none.",
+        kind: Kind::Real { default: 0.0, least: 0.0, most: 10.0 },
+    },
+    Parameter {
+        name: "gravity_constant",
+        unit: "",
+        help: "Constant of gravity G.",
+        kind: Kind::Real { default: 1.0, least: 1e-6, most: 1e6 },
+    },
+    Parameter {
+        name: "duration",
+        unit: "",
+        help: "Physical time to run for; 0: as long as the preset needs.",
+        kind: Kind::Real { default: 0.0, least: 0.0, most: 1e6 },
+    },
+];
+
+/// Samples of the paths kept for drawing.
+const KEPT: usize = 1500;
+/// Samples computed between two times at which the integrators are brought together.
+const BATCH: u64 = 256;
+
+/// What is measured beside the system on show, once.
+struct Aside {
+    orders: Option<Orders>,
+    /// Distance of the figure-eight from its start after a period.
+    closure: Option<f64>,
+    triangles: Vec<Triangle>,
+    burrau: Option<Run>,
+}
+
+struct ThreeBody {
+    start: Start,
+    seed: u64,
+    /// The system on show; the same in another integrator; and, with a fixed step, the same with twice the step.
+    runs: Vec<Run>,
+    parting: Parting,
+    /// Newest samples, for trails.
+    path: VecDeque<Frame>,
+    energy_error: Vec<(f64, f64)>,
+    other_energy_error: Vec<(f64, f64)>,
+    /// Distance of the stars from their start after one period.
+    closure: Option<f64>,
+    /// Greatest coordinate of a star so far.
+    reach: f64,
+    samples: u64,
+    time: f64,
+    aside: Option<Aside>,
+}
+
+impl ThreeBody {
+    fn new(settings: &Settings) -> Result<Self, Invalid> {
+        let start = Start::new(settings)?;
+        let dt = start.fitting_step(settings.real("time_step"));
+        let steps = start.duration / dt;
+        if steps > 1e9 {
+            return Err(settings.invalid("time_step", format!("one that needs at most 1e9 steps, not {steps:.1e}")));
+        }
+        let integrator = match settings.word("integrator") {
+            "gauss-radau-15" => PRECISE,
+            name => Integrator::from_name(name, dt)?,
+        };
+        let mut runs = vec![Run::new(&start, integrator)?];
+        if integrator == PRECISE {
+            runs.push(Run::new(&start, Integrator::Yoshida4 { dt })?);
+        } else {
+            // An interval may be a single step: then twice the step meets every other sampling time, which is enough.
+            runs.push(Run::new(&start, PRECISE)?);
+            runs.push(Run::new(&start.without_dust(), Integrator::from_name(integrator.name(), 2.0 * dt)?)?);
+        }
+        let mut simulation = Self {
+            parting: Parting::new(&start),
+            seed: settings.seed,
+            runs,
+            path: VecDeque::new(),
+            energy_error: vec![],
+            other_energy_error: vec![],
+            closure: None,
+            reach: 0.0,
+            samples: 0,
+            time: 0.0,
+            aside: None,
+            start,
+        };
+        for run in &mut simulation.runs {
+            run.sample(0.0).map_err(|failure| Invalid::new("start", failure, "a system that can be evaluated"))?;
+        }
+        simulation.take_in();
+        Ok(simulation)
+    }
+
+    /// Whether the system on show has the outcome the literature gives.
+    fn is_burrau(&self) -> bool {
+        self.start.preset == "pythagorean" && self.start.masses() == [3.0, 4.0, 5.0] && self.start.softening == 0.0
+    }
+
+    fn measure_aside(&self) -> Result<Aside, Failure> {
+        let preset = self.start.preset.as_str();
+        let (all, eight) = (preset == "paper", preset == "figure-eight");
+        let mut aside = Aside { orders: None, closure: None, triangles: vec![], burrau: None };
+        if all || eight {
+            aside.orders = Some(Orders::measure(self.seed)?);
+        }
+        if all {
+            let start = Start::figure_eight([1.0; 3], 1.0, 0.0);
+            let mut run = Run::new(&start, PRECISE).map_err(failure)?;
+            run.advance(start::PERIOD_OF_EIGHT)?;
+            let frame = [run.engine.particles().position.clone(), start.particles.position];
+            aside.closure = Some(farthest(&frame[0], &frame[1]));
+            aside.burrau = Some(fate::burrau()?);
+        }
+        if all || preset == "lagrange" {
+            let own = if all { [1.0, 0.02, 0.01] } else { self.start.masses() };
+            aside.triangles.push(Triangle::measure(own, self.seed)?);
+            if own != [1.0; 3] {
+                aside.triangles.push(Triangle::measure([1.0; 3], self.seed)?);
+            }
+        }
+        Ok(aside)
+    }
+
+    /// Takes in the frames all runs have sampled.
+    fn take_in(&mut self) {
+        let mut batches = self.runs.iter_mut().map(|run| std::mem::take(&mut run.frames));
+        let (own, other) = (batches.next().unwrap_or_default(), batches.next().unwrap_or_default());
+        drop(batches);
+        for (frame, other) in own.into_iter().zip(other) {
+            self.parting.see(frame.time, &frame.position, &other.position);
+            self.energy_error.push((frame.time, frame.energy_error));
+            self.other_energy_error.push((frame.time, other.energy_error));
+            let coordinates = frame.position[..3].iter().flat_map(|r| r.0);
+            self.reach = coordinates.fold(self.reach, |reach, x| reach.max(x.abs()));
+            if self.closure.is_none() && self.start.period.is_some_and(|period| frame.time >= period * (1.0 - 1e-12)) {
+                self.closure = Some(farthest(&frame.position[..3], &self.start.particles.position[..3]));
+            }
+            if self.path.len() == KEPT {
+                self.path.pop_front();
+            }
+            self.path.push_back(frame);
+            self.samples += 1;
+        }
+    }
+}
+
+impl Simulation for ThreeBody {
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn end(&self) -> f64 {
+        self.start.duration
+    }
+
+    fn advance(&mut self, to: f64) -> Result<(), Failure> {
+        if self.aside.is_none() {
+            self.aside = Some(self.measure_aside()?);
+        }
+        let interval = self.start.interval;
+        let last = (to / interval * (1.0 + 1e-12)).floor() as u64;
+        while self.samples <= last {
+            let (from, until) = (self.samples, (self.samples + BATCH).min(last + 1));
+            let outcome = ensemble::for_each(&mut self.runs, |run| {
+                (from..until).try_for_each(|sample| run.sample(sample as f64 * interval))
+            });
+            self.take_in();
+            outcome?;
+        }
+        self.time = self.time.max(to);
+        Ok(())
+    }
+
+    fn draw(&self, scene: &mut Scene) {
+        self.draw_into(scene);
+    }
+
+    fn charts(&self) -> Vec<Chart> {
+        let mut charts = vec![self.chart_of_parting()];
+        if let Some(aside) = &self.aside {
+            charts.extend(aside.orders.as_ref().map(Orders::chart));
+            if let [first, others @ ..] = &aside.triangles[..] {
+                charts.push(first.chart(others.first()));
+            }
+        }
+        charts.push(self.chart_of_energy());
+        charts
+    }
+
+    fn checks(&self) -> Vec<Check> {
+        let mut checks = self.checks_of_conservation();
+        checks.extend(self.check_of_closure());
+        if self.is_burrau() && self.time >= self.end() {
+            checks.extend(Fate::checks_of_burrau(self.runs[0].engine.particles(), self.start.constant, self.time));
+        }
+        checks.extend(self.checks_of_parting());
+        if let Some(aside) = &self.aside {
+            checks.extend(aside.orders.iter().flat_map(Orders::checks));
+            checks.extend(aside.closure.map(report::check_of_closure));
+            checks.extend(aside.triangles.iter().map(Triangle::check));
+            if let Some(burrau) = &aside.burrau {
+                checks.extend(Fate::checks_of_burrau(burrau.engine.particles(), 1.0, burrau.engine.time()));
+            }
+        }
+        checks
+    }
+
+    fn honesty(&self) -> Honesty {
+        let run = &self.runs[0];
+        Honesty {
+            engine: format!("time-driven, {}", run.engine.integrator().name()),
+            work: self.runs.iter().map(|run| run.engine.steps()).sum(),
+            work_unit: "steps",
+            energy_drift: Some(run.relative_energy_error()),
+            momentum_drift: Some(run.relative_momentum_error()),
+            angular_momentum_drift: Some(run.relative_angular_momentum_error()),
+            largest_overlap: None,
+            stability_number: run.engine.integrator().dt().map(|dt| dt * run.fastest),
+        }
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        let parting = &self.parting;
+        let mut columns: Vec<String> = ["time", "other_integrator_separation"].map(String::from).to_vec();
+        let mut series = vec![&parting.integrators];
+        if self.start.grains > 1 {
+            columns.extend(["neighbour_separation", "twin_1e-4_separation", "twin_1e-8_separation"].map(String::from));
+            series.extend([&parting.neighbours, &parting.twins[0], &parting.twins[1]]);
+        }
+        let row = |k: usize| std::iter::once(parting.time[k]).chain(series.iter().map(|s| libm::exp(s[k]))).collect();
+        vec![Table { name: "separation".into(), columns, rows: (0..parting.time.len()).map(row).collect() }]
+    }
+
+    fn moments(&self) -> Vec<f64> {
+        let end = self.end();
+        if self.start.preset == "pythagorean" { vec![0.0, 0.22 * end, 0.6 * end] } else { vec![0.0, 0.15 * end, 0.5 * end] }
+    }
+}
+
+/// Greatest distance between a body in one picture and the same body in another.
+fn farthest(a: &[corpuscle_core::Vector<2>], b: &[corpuscle_core::Vector<2>]) -> f64 {
+    a.iter().zip(b).map(|(&a, &b)| (a - b).norm()).fold(0.0, f64::max)
+}
+
+/// A set-up of this program's own that was refused: said as what it is, a run that cannot go on.
+#[allow(clippy::needless_pass_by_value)] // as `map_err` hands it over
+fn failure(invalid: Invalid) -> Failure {
+    Failure { time: 0.0, particle: None, cause: invalid.to_string() }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,80 @@
+//! What there is to see: stars with their trails, dust, and the numbers of the moment.
+
+use corpuscle_scene::{Body, Camera, Colour, Colouring, Scene, TrailPoint};
+
+use super::ThreeBody;
+use super::fate::Fate;
+
+/// Samples drawn behind a star and behind a grain.
+const TRAIL_OF_STAR: usize = 1000;
+const TRAIL_OF_GRAIN: usize = 120;
+/// The picture grows with the stars' reach up to this many times its first width.
+const WIDEST: f64 = 2.0;
+
+impl ThreeBody {
+    pub(super) fn draw_into(&self, scene: &mut Scene) {
+        scene.clear();
+        let Some(frame) = self.path.back() else { return };
+        let start = &self.start;
+        let half = (1.1 * self.reach).clamp(start.view, WIDEST * start.view);
+        scene.time = self.time;
+        scene.title = super::EXPERIMENT.title.into();
+        scene.caption = self.caption();
+        scene.camera = Camera::fit([-half, -half, 0.0], [half, half, 0.0]);
+        let masses = start.masses();
+        let heaviest = masses.iter().fold(0.0f64, |most, &mass| most.max(mass));
+        let visible = 3 + start.grains;
+        scene.bodies.extend((0..visible).map(|i| Body {
+            position: frame.position[i].to_three(),
+            velocity: frame.velocity[i].to_three(),
+            time: frame.time,
+            // Volume as mass, but no star so small that it is lost.
+            radius: if i < 3 { 0.035 * half * (masses[i] / heaviest).cbrt().max(0.4) } else { 0.0075 * half },
+            shade: i.min(3) as f64,
+        }));
+        let mut names: Vec<String> = masses.iter().map(|mass| format!("star, m = {mass}")).collect();
+        if start.grains > 0 {
+            names.push("dust".into());
+        }
+        scene.colouring = Colouring::Species(names);
+        // Dust first: the stars' trails lie on top.
+        for i in (3..visible).chain(0..3) {
+            let star = i < 3;
+            let (capacity, colour) = if star { (TRAIL_OF_STAR, Colour::Accent(i as u8)) } else { (TRAIL_OF_GRAIN, Colour::Faint) };
+            let trail = scene.trail(i as u32, capacity, colour);
+            trail.width = if star { 2.0 } else { 0.8 };
+            let seen = trail.points().back().map_or(f64::NEG_INFINITY, |point| point.time);
+            let first = self.path.partition_point(|frame| frame.time <= seen).max(self.path.len().saturating_sub(capacity));
+            for frame in self.path.range(first..) {
+                trail.push(TrailPoint { position: frame.position[i].to_three(), time: frame.time });
+            }
+        }
+    }
+
+    fn caption(&self) -> String {
+        let run = &self.runs[0];
+        let mut caption = format!(
+            "t = {:.2}   {}   energy error {:.0e}",
+            self.time,
+            run.engine.integrator().name(),
+            run.relative_energy_error()
+        );
+        match self.start.preset.as_str() {
+            "pythagorean" => {
+                let fate = Fate::of(run.engine.particles(), self.start.constant);
+                caption += &format!("   {}", fate.describe(self.start.masses()));
+            }
+            "paper" | "lagrange" if self.start.grains > 1 => {
+                if let Some(apart) = self.parting.neighbours.last() {
+                    caption += &format!("   grains {} apart are now {:.2} apart", self.start.spacing, libm::exp(*apart));
+                }
+            }
+            _ => {
+                if let Some(period) = self.start.period {
+                    caption += &format!("   period {:.2}", self.time / period);
+                }
+            }
+        }
+        caption
+    }
+}

@@ -1,0 +1,143 @@
+//! What was measured on the system on show, beside its theory.
+
+use corpuscle_observe::chart::Axis;
+use corpuscle_observe::{Chart, Check, Series, Style};
+
+use super::ThreeBody;
+use super::start::{OFFSETS, PRECISE};
+
+/// Most points of a series in a chart.
+const MOST_POINTS: usize = 2000;
+
+/// The figure-eight after one period.
+pub(super) fn check_of_closure(closure: f64) -> Check {
+    Check::at_most(
+        "figure-eight: distance from the start after one period",
+        closure,
+        1e-6,
+        "Chenciner and Montgomery 2000 (doi:10.2307/2661357); the start is given to 8 decimals, the period to 8, velocities near 1 \
+         and a period of 6.3 carry that to some 1e-7",
+    )
+}
+
+impl ThreeBody {
+    pub(super) fn checks_of_conservation(&self) -> Vec<Check> {
+        let run = &self.runs[0];
+        if self.samples < 2 {
+            return vec![];
+        }
+        let coarse = self.runs.get(2);
+        let [energy, momentum, angular] = run.bounds(coarse);
+        let rounding = "rounding: 4 u sqrt(n) times its largest scale, after Rein and Spiegel 2015 (doi:10.1093/mnras/stu2164)";
+        let truncation = format!("{rounding}; plus 2^(1 - p) times the error at twice the step");
+        let symplectic = run.engine.integrator().is_symplectic();
+        let reference = |exact: bool| if coarse.is_none() || exact { rounding.to_owned() } else { truncation.clone() };
+        vec![
+            Check::at_most("relative energy error", run.relative_energy_error(), energy, reference(false)),
+            Check::at_most("relative momentum error", run.relative_momentum_error(), momentum, reference(true)),
+            Check::at_most("relative angular momentum error", run.relative_angular_momentum_error(), angular, reference(symplectic)),
+        ]
+    }
+
+    pub(super) fn check_of_closure(&self) -> Option<Check> {
+        let closure = self.closure?;
+        if self.start.preset == "figure-eight" {
+            return Some(check_of_closure(closure));
+        }
+        // Rounding, u sqrt(n) of a length of order 1, shears the orbits by 6 pi a revolution at most, or grows exponentially.
+        let rate = super::triangle::growth_rate(self.start.masses());
+        let bound = self.runs[0].bounds(self.runs.get(2))[0] * super::triangle::drift_bound(rate, 1.0);
+        (self.start.softening == 0.0).then(|| {
+            Check::at_most(
+                "Lagrange's triangle: distance from the start after one period 2π√(a³/GM)",
+                closure,
+                bound,
+                "Lagrange 1772: it turns rigidly; the energy's error, sheared by 6π a revolution and growing as exp(λ t)",
+            )
+        })
+    }
+
+    pub(super) fn checks_of_parting(&self) -> Vec<Check> {
+        let mut checks = vec![];
+        if let Some(growth) = self.parting.growth().filter(|_| self.start.preset == "paper") {
+            let rate = growth.rate;
+            checks.push(Check::at_least(
+                format!("growth rate λ = {:.3} ± {:.3} of separations, over its standard error", rate.mean, rate.standard_error),
+                rate.mean / rate.standard_error,
+                4.0,
+                format!("sensitive dependence: λ > 0 over all grains (Poincaré 1892); twins 1e-8 apart until t = {:.1}", growth.until),
+            ));
+        }
+        if let Some((time, difference)) = self.parting.proportionality() {
+            checks.push(difference.check(
+                format!("ln of separation over offset, twins {:.0e} less twins {:.0e} apart, at t = {time:.1}", OFFSETS[0], OFFSETS[1]),
+                0.0,
+                "small separations obey a linear equation: they grow in proportion; standard error over the grains",
+            ));
+        }
+        checks
+    }
+
+    pub(super) fn chart_of_parting(&self) -> Chart {
+        let parting = &self.parting;
+        let series = |name: String, values: &[f64]| Series::new(name, Style::Line, thin(&parting.time, values));
+        let mut chart = Chart::new(
+            "separation",
+            "How paths that start close together part",
+            Axis::linear("time t", ""),
+            Axis::logarithmic("separation (geometric mean)", ""),
+        );
+        let other = self.runs[1].engine.integrator().name();
+        if self.start.grains > 1 {
+            let [neighbours, wide, close] = parting.offsets();
+            chart = chart
+                .with(series(format!("neighbours, {neighbours} apart"), &parting.neighbours))
+                .with(series(format!("twins, {wide:.0e} apart"), &parting.twins[0]))
+                .with(series(format!("twins, {close:.0e} apart"), &parting.twins[1]))
+                .with(series("unrelated grains: saturation".into(), &parting.unrelated));
+        }
+        chart = chart.with(series(format!("one start, two integrators ({other})"), &parting.integrators));
+        let mut note = String::from("A straight rise is exponential growth.");
+        if let Some(growth) = parting.growth() {
+            let name = format!("exp(λ t), λ = {:.2} ± {:.2}", growth.rate.mean, growth.rate.standard_error);
+            let line = |t: f64| libm::exp(growth.intercept + growth.rate.mean * t);
+            chart = chart.with(Series::theory(name, 0.0, growth.until, 2, corpuscle_observe::Scale::Linear, line));
+            note += " It ends where the grains are as far apart as any two: there memory of the start is lost.";
+        }
+        if let Some(horizon) = parting.horizon(self.start.view) {
+            note += &format!(" Two good integrators disagree from t = {horizon:.1} on.");
+        }
+        chart.noting(note)
+    }
+
+    pub(super) fn chart_of_energy(&self) -> Chart {
+        let (times, own): (Vec<f64>, Vec<f64>) = self.energy_error.iter().copied().unzip();
+        let other: Vec<f64> = self.other_energy_error.iter().map(|pair| pair.1).collect();
+        let own: Vec<f64> = own.iter().map(|&error| libm::log(error)).collect();
+        let other: Vec<f64> = other.iter().map(|&error| libm::log(error)).collect();
+        let name = |k: usize| self.runs[k].engine.integrator().name();
+        let mut chart = Chart::new(
+            "energy",
+            "Largest energy error so far",
+            Axis::linear("time t", ""),
+            Axis::logarithmic("|E − E0| / |E0|", ""),
+        )
+        .with(Series::new(name(0), Style::Line, thin(&times, &own)))
+        .with(Series::new(name(1), Style::Line, thin(&times, &other)))
+        .noting("Rounding adds up like a random walk, as the square root of the number of steps; truncation depends on the step.");
+        let precise = self.runs.iter().find(|run| run.engine.integrator() == PRECISE);
+        if let (Some(run), Some(&end)) = (precise, times.last().filter(|&&end| end > 0.0)) {
+            let bound = run.bounds(None)[0];
+            let curve = |t: f64| bound * (t / end).sqrt();
+            let line = Series::theory("bound of rounding, 4 u sqrt(n) X", end / 200.0, end, 200, corpuscle_observe::Scale::Linear, curve);
+            chart = chart.with(line);
+        }
+        chart
+    }
+}
+
+/// `(time, exp(value))`, thinned out evenly to what a chart can show.
+fn thin(times: &[f64], values: &[f64]) -> Vec<(f64, f64)> {
+    let stride = times.len().div_ceil(MOST_POINTS).max(1);
+    times.iter().zip(values).step_by(stride).map(|(&time, &value)| (time, libm::exp(value))).collect()
+}
