@@ -57,7 +57,8 @@ impl<const D: usize> EventDriven<D> {
     pub fn unwrapped(&self, i: usize) -> Vector<D> {
         let side = self.boundary.extent();
         let images = self.bodies[i].images;
-        let travelled = Vector::from_fn(|k| if self.boundary.axes[k] == Axis::Periodic { f64::from(images[k]) * side[k] } else { 0.0 });
+        let travelled =
+            Vector::from_fn(|k| if self.boundary.axes[k] == Axis::Periodic { f64::from(images[k]) * side[k] } else { 0.0 });
         self.flights[i].position_at(self.now, self.rules.field) + travelled
     }
 

@@ -69,7 +69,8 @@ impl Calendar {
 
     fn fit(&mut self, now: f64) {
         // Waiting times are nearly exponential: their median is ln 2 of the mean.
-        let mut waits: Vec<f64> = self.entries.iter().map(|e| e.time - now).filter(|wait| wait.is_finite() && *wait > 0.0).collect();
+        let mut waits: Vec<f64> =
+            self.entries.iter().map(|e| e.time - now).filter(|wait| wait.is_finite() && *wait > 0.0).collect();
         if !waits.is_empty() {
             let (middle, count) = (waits.len() / 2, waits.len() as f64);
             let median = *waits.select_nth_unstable_by(middle, f64::total_cmp).1;

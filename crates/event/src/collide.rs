@@ -22,20 +22,22 @@ impl<const D: usize> EventDriven<D> {
         let (v1, v2) = (self.flights[i].velocity, self.flights[j].velocity);
         let r = self.flights[j].position - self.flights[i].position + shift;
         let distance = r.norm();
-        let k = r / distance;
-        let approach = -(v2 - v1).dot(k);
         let mu = m1 * m2 / (m1 + m2);
-        let impulse = ((1.0 + self.rules.restitution_at(approach)) * mu * approach).max(0.0);
-        self.flights[i].velocity = v1 - k * (impulse / m1);
-        self.flights[j].velocity = v2 + k * (impulse / m2);
+        // With `r` in place of a rounded unit vector: distances at contact repeat, so the rounding of `k` would be biased
+        // and heat the system.
+        let rr = r.norm_squared();
+        let closing = -(v2 - v1).dot(r) / rr;
+        let change = ((1.0 + self.rules.restitution_at(closing * distance)) * mu * closing).max(0.0);
+        self.flights[i].velocity = v1 - r * (change / m1);
+        self.flights[j].velocity = v2 + r * (change / m2);
         self.stamp(i);
         self.stamp(j);
         let contact = Contact {
             time: self.epoch + self.now,
             first: self.party(i, v1),
             with: Meeting::Pair(self.party(j, v2)),
-            normal: k,
-            impulse,
+            normal: r / distance,
+            impulse: change * distance,
             distance,
         };
         self.plan_and_schedule::<FIELD>(i);

@@ -76,7 +76,11 @@ impl<const D: usize> EventDriven<D> {
         boundary.validate_particles(&particles)?;
         rules.validate()?;
         if let Some(i) = particles.mass.iter().position(|&mass| mass <= 0.0) {
-            return Err(Invalid::new(format!("mass of particle {i}"), particles.mass[i], "a positive mass: collisions need inertia"));
+            return Err(Invalid::new(
+                format!("mass of particle {i}"),
+                particles.mass[i],
+                "a positive mass: collisions need inertia",
+            ));
         }
         if particles.len() >= 1 << 30 {
             return Err(Invalid::new("particles", particles.len(), "fewer than 2^30"));
@@ -257,7 +261,8 @@ impl<const D: usize> Engine<D> for EventDriven<D> {
         if to <= self.time {
             return Ok(());
         }
-        let flow = if self.rules.field == Vector::ZERO { self.run::<false, O>(to, observer) } else { self.run::<true, O>(to, observer) }?;
+        let flow =
+            if self.rules.field == Vector::ZERO { self.run::<false, O>(to, observer) } else { self.run::<true, O>(to, observer) }?;
         if flow.is_continue() {
             self.now = self.now.max(to - self.epoch);
             self.time = to;

@@ -69,37 +69,41 @@ pub(crate) struct Candidates {
     pub(crate) chosen: Vec<u32>,
 }
 
-/// The neighbourhood of one cell: index contributions and images of the lower, own and upper layer along each axis.
+impl Candidates {
+    /// Makes room for this many in all.
+    #[inline]
+    fn reserve(&mut self, count: usize) {
+        if self.index.len() < count {
+            self.index.resize(2 * count, 0);
+            self.cell.resize(2 * count, 0);
+            self.chosen.resize(2 * count, 0);
+        }
+    }
+}
+
+/// The neighbourhood of one cell: index contributions, images and shifts of the lower, own and upper layer along each
+/// axis.
 #[derive(Clone, Copy)]
-struct Neighbourhood<const D: usize> {
+pub(crate) struct Neighbourhood<const D: usize> {
     part: [[u32; 3]; D],
     image: [[i8; 3]; D],
-}
-
-/// Periodic images of the lower, own and upper layer of cells along each axis.
-pub(crate) struct ImagesAround<const D: usize> {
-    image: [[i8; 3]; D],
     shift: [[f64; 3]; D],
+    /// Every neighbour exists, in the primary image.
+    pub(crate) inside: bool,
 }
 
-impl<const D: usize> ImagesAround<D> {
+impl<const D: usize> Neighbourhood<D> {
     /// Image and shift of the neighbour cell of this number.
     #[inline]
-    pub(crate) fn of(&self, number: u8) -> ([i8; D], Vector<D>) {
-        let layer = |k: usize| DIGITS[number as usize % 27][k] as usize;
+    pub(crate) fn image(&self, number: u8) -> ([i8; D], Vector<D>) {
+        let layer = |k: usize| DIGITS[number as usize & 31][k] as usize;
         (std::array::from_fn(|k| self.image[k][layer(k)]), Vector::from_fn(|k| self.shift[k][layer(k)]))
-    }
-
-    /// Whether any neighbour is seen in another image than the primary one.
-    #[inline]
-    pub(crate) fn any(&self) -> bool {
-        self.image.iter().any(|layers| layers[0] != 0 || layers[2] != 0)
     }
 }
 
-/// The digits of the numbers up to 27 in base three.
-const DIGITS: [[u8; 3]; 27] = {
-    let mut digits = [[0; 3]; 27];
+/// The digits of the numbers up to 27 in base three. (32 of them, so that five bits are an index.)
+const DIGITS: [[u8; 3]; 32] = {
+    let mut digits = [[0; 3]; 32];
     let mut number = 0;
     while number < 27 {
         digits[number] = [(number % 3) as u8, (number / 3 % 3) as u8, (number / 9) as u8];
@@ -283,21 +287,23 @@ impl<const D: usize> Grid<D> {
         }
     }
 
+    /// The cells around that of `i`.
     #[inline]
-    fn neighbourhood(&self, i: u32) -> Neighbourhood<D> {
+    pub(crate) fn neighbourhood(&self, i: u32) -> Neighbourhood<D> {
         let cell = self.places[i as usize].cell;
-        let mut around = Neighbourhood { part: [[0; 3]; D], image: [[0; 3]; D] };
+        let mut around = Neighbourhood { part: [[0; 3]; D], image: [[0; 3]; D], shift: [[0.0; 3]; D], inside: true };
         for k in 0..D {
             let (c, last, stride) = (u32::from(cell[k]), self.cells[k] - 1, self.stride[k]);
             let here = c * stride;
             around.part[k] = [here.wrapping_sub(stride), here, here + stride];
+            let side = self.upper[k] - self.lower[k];
             if c == 0 {
                 around.part[k][0] = self.beyond(k, last * stride);
-                around.image[k][0] = -1;
+                (around.image[k][0], around.shift[k][0], around.inside) = (-1, -side, false);
             }
             if c == last {
                 around.part[k][2] = self.beyond(k, 0);
-                around.image[k][2] = 1;
+                (around.image[k][2], around.shift[k][2], around.inside) = (1, side, false);
             }
         }
         around
@@ -308,22 +314,31 @@ impl<const D: usize> Grid<D> {
         if self.axes[axis] == Axis::Periodic { around } else { OUTSIDE }
     }
 
-    /// Collects all small particles in the cells around that of `i`, itself included.
+    /// Collects all small particles in the cells of a neighbourhood, the one in its middle included.
     #[inline]
-    pub(crate) fn collect_around(&self, i: u32, found: &mut Candidates) {
-        self.collect(i, &self.around, found);
+    pub(crate) fn collect_around(&self, around: &Neighbourhood<D>, found: &mut Candidates) {
+        self.collect(around, &self.around, found);
     }
 
     /// The same, for the layer of cells that is new after a step.
     #[inline]
-    pub(crate) fn collect_ahead(&self, i: u32, axis: usize, up: bool, found: &mut Candidates) {
-        self.collect(i, &self.ahead[axis][usize::from(up)], found);
+    pub(crate) fn collect_ahead(&self, around: &Neighbourhood<D>, axis: usize, up: bool, found: &mut Candidates) {
+        self.collect(around, &self.ahead[axis][usize::from(up)], found);
     }
 
     #[inline]
-    fn collect(&self, i: u32, offsets: &[[u8; D]], found: &mut Candidates) {
-        let around = self.neighbourhood(i);
+    fn collect(&self, around: &Neighbourhood<D>, offsets: &[[u8; D]], found: &mut Candidates) {
+        if around.inside {
+            self.collect_from::<true>(around, offsets, found);
+        } else {
+            self.collect_from::<false>(around, offsets, found);
+        }
+    }
+
+    /// `INSIDE`: every neighbour cell exists, in the primary image.
+    fn collect_from<const INSIDE: bool>(&self, around: &Neighbourhood<D>, offsets: &[[u8; D]], found: &mut Candidates) {
         let mut count = 0;
+        found.reserve(SLOTS * offsets.len());
         for offset in offsets {
             let (mut cell, mut number) = (0, 0);
             for k in (0..D).rev() {
@@ -331,36 +346,20 @@ impl<const D: usize> Grid<D> {
                 number = number * 3 + offset[k];
             }
             let Some(cell) = self.content.get(cell as usize) else { continue };
-            if count + SLOTS > found.index.len() {
-                found.index.resize(2 * (count + SLOTS), 0);
-                found.cell.resize(2 * (count + SLOTS), 0);
-            }
             found.index[count..count + SLOTS].copy_from_slice(&cell.slots);
-            found.cell[count..count + SLOTS].fill(number);
+            if !INSIDE {
+                found.cell[count..count + SLOTS].fill(number);
+            }
             count += cell.filled as usize;
             let mut j = cell.more;
             while j != NONE {
-                if count == found.index.len() {
-                    found.index.push(0);
-                    found.cell.push(0);
-                }
+                found.reserve(count + 1 + SLOTS * offsets.len());
                 (found.index[count], found.cell[count]) = (j, number);
                 count += 1;
                 j = self.places[j as usize].next;
             }
         }
         found.count = count;
-        if found.chosen.len() < count {
-            found.chosen.resize(2 * count, 0);
-        }
-    }
-
-    /// The periodic images the cells around that of `i` are seen in, by number.
-    #[inline]
-    pub(crate) fn images_around(&self, i: u32) -> ImagesAround<D> {
-        let around = self.neighbourhood(i);
-        let side = Vector::<D>::from_fn(|k| self.upper[k] - self.lower[k]);
-        ImagesAround { image: around.image, shift: std::array::from_fn(|k| around.image[k].map(|turns| f64::from(turns) * side[k])) }
     }
 
     /// All small particles in the cells that the surface of a large one can reach; `number` counts the large ones.
@@ -410,7 +409,7 @@ fn offsets<const D: usize>() -> Vec<[u8; D]> {
 }
 
 /// Mean number of particles in a cell below which finer cells only cost crossings. Measured: docs/performance.md.
-const OCCUPANCY: f64 = 0.9;
+const OCCUPANCY: f64 = 0.5;
 
 /// The cell width with the least estimated work; particles of larger diameter count as large.
 ///

@@ -3,7 +3,7 @@
 use corpuscle_core::Vector;
 
 use crate::engine::EventDriven;
-use crate::grid::{Candidates, ImagesAround};
+use crate::grid::{Candidates, Neighbourhood};
 use crate::motion::{Flight, contact_delay, upward_passage};
 use crate::plan::{Exit, Plan};
 
@@ -69,6 +69,7 @@ impl<const D: usize> EventDriven<D> {
     pub(crate) fn plan_all(&mut self) {
         for plan in &mut self.plans {
             plan.stamp = plan.stamp.wrapping_add(1);
+            plan.surface_time = f64::INFINITY;
         }
         for i in 0..self.flights.len() {
             if self.rules.field == Vector::ZERO {
@@ -106,8 +107,9 @@ impl<const D: usize> EventDriven<D> {
         if let Some(number) = self.grid.is_large(i as u32) {
             self.grid.visit_reach(number, |j, shift, image| search.consider::<FIELD>(j, &flights[j as usize], shift, image));
         } else {
-            self.grid.collect_around(i as u32, &mut self.candidates);
-            self.choose::<FIELD>(&mut search);
+            let around = self.grid.neighbourhood(i as u32);
+            self.grid.collect_around(&around, &mut self.candidates);
+            self.choose::<FIELD>(&mut search, &around);
         }
         let flights = &self.flights;
         self.grid.visit_large(|j, shift, image| search.consider::<FIELD>(j, &flights[j as usize], shift, image));
@@ -115,31 +117,30 @@ impl<const D: usize> EventDriven<D> {
     }
 
     /// Finds the earliest collision among the candidates: first, without a branch, who comes to contact at all, then when.
-    fn choose<const FIELD: bool>(&mut self, search: &mut Search<D>) {
-        let images = self.grid.images_around(search.index);
-        let count = match (search.me.time == self.now, images.any()) {
-            (true, true) => self.filter::<FIELD, true, true>(search, &images),
-            (true, false) => self.filter::<FIELD, true, false>(search, &images),
-            (false, true) => self.filter::<FIELD, false, true>(search, &images),
-            (false, false) => self.filter::<FIELD, false, false>(search, &images),
+    fn choose<const FIELD: bool>(&mut self, search: &mut Search<D>, around: &Neighbourhood<D>) {
+        let count = match (search.me.time == self.now, around.inside) {
+            (true, true) => self.filter::<FIELD, true, true>(search, around),
+            (true, false) => self.filter::<FIELD, true, false>(search, around),
+            (false, true) => self.filter::<FIELD, false, true>(search, around),
+            (false, false) => self.filter::<FIELD, false, false>(search, around),
         };
         for &number in &self.candidates.chosen[..count] {
             let (j, cell) = (self.candidates.index[number as usize], self.candidates.cell[number as usize]);
-            let (image, shift) = images.of(cell);
+            let (image, shift) = if around.inside { ([0; D], Vector::ZERO) } else { around.image(cell) };
             search.consider::<FIELD>(j, &self.flights[j as usize], shift, image);
         }
     }
 
-    fn filter<const FIELD: bool, const FRESH: bool, const IMAGES: bool>(
+    fn filter<const FIELD: bool, const FRESH: bool, const INSIDE: bool>(
         &mut self,
         search: &Search<D>,
-        images: &ImagesAround<D>,
+        around: &Neighbourhood<D>,
     ) -> usize {
         let Candidates { index, cell, count, chosen } = &mut self.candidates;
         let (index, cell, chosen) = (&index[..*count], &cell[..*count], &mut chosen[..*count]);
         let mut met = 0;
         for number in 0..*count {
-            let shift = if IMAGES { images.of(cell[number]).1 } else { Vector::ZERO };
+            let shift = if INSIDE { Vector::ZERO } else { around.image(cell[number]).1 };
             chosen[met] = number as u32;
             met += usize::from(search.may_meet::<FIELD, FRESH>(&self.flights[index[number] as usize], shift));
         }
@@ -218,8 +219,9 @@ impl<const D: usize> EventDriven<D> {
             } else {
                 let plan = self.plans[i];
                 let mut search = self.search(i, plan.pair_time, plan.partner, plan.image);
-                self.grid.collect_ahead(i as u32, axis, exit.up, &mut self.candidates);
-                self.choose::<FIELD>(&mut search);
+                let around = self.grid.neighbourhood(i as u32);
+                self.grid.collect_ahead(&around, axis, exit.up, &mut self.candidates);
+                self.choose::<FIELD>(&mut search, &around);
                 // It may have come within reach of a large particle, which knows nothing of it yet.
                 let flights = &self.flights;
                 self.grid.visit_large(|j, shift, image| search.consider::<FIELD>(j, &flights[j as usize], shift, image));

@@ -62,8 +62,10 @@ pub(crate) fn surfaces<const D: usize>(boundary: &Boundary<D>) -> Vec<Surface<D>
             let (lower, upper) = (boundary.lower[hole.along], boundary.upper[hole.along]);
             // A hole that reaches the face of the box has no rim there, unless the plate goes on behind a periodic one.
             let periodic = boundary.axes[hole.along] == Axis::Periodic;
-            let rims =
-                [(hole.from, hole.from > lower || periodic && hole.to < upper), (hole.to, hole.to < upper || periodic && hole.from > lower)];
+            let rims = [
+                (hole.from, hole.from > lower || periodic && hole.to < upper),
+                (hole.to, hole.to < upper || periodic && hole.from > lower),
+            ];
             for (rim, _) in rims.into_iter().filter(|(_, there)| *there) {
                 for image in images(hole.along) {
                     let along = rim + image * side[hole.along];

@@ -5,7 +5,7 @@
 use std::ops::ControlFlow;
 
 use corpuscle_core::placement::{lattice, maxwell};
-use corpuscle_core::{Boundary, Contact, Engine, Meeting, Observer, Particles, Random, Vector};
+use corpuscle_core::{Axis, Boundary, Contact, Engine, Hole, Meeting, Observer, Particles, Partition, Random, Vector};
 use corpuscle_event::{EventDriven, Rules};
 
 /// Equal spheres of diameter and mass 1 at temperature 1 in a periodic cube of the given packing fraction.
@@ -76,4 +76,50 @@ pub(crate) fn largest_overlap<const D: usize>(engine: &EventDriven<D>) -> f64 {
 pub(crate) fn same_bits<const D: usize>(a: &Particles<D>, b: &Particles<D>) -> bool {
     let bits = |v: &[Vector<D>]| v.iter().flat_map(|x| x.0.map(f64::to_bits)).collect::<Vec<_>>();
     bits(&a.position) == bits(&b.position) && bits(&a.velocity) == bits(&b.velocity)
+}
+
+/// A random system of up to 24 spheres: any mix of faces, radii over a factor of 10, masses over a factor of 100.
+pub(crate) fn random_system<const D: usize>(seed: u64) -> (Boundary<D>, Particles<D>, Rules<D>) {
+    let mut random = Random::new(seed, 1);
+    let mut boundary = Boundary::<D>::new([0.0; D], std::array::from_fn(|_| 3.0 + 5.0 * random.uniform()), Axis::Walls);
+    for axis in &mut boundary.axes {
+        *axis = [Axis::Walls, Axis::Periodic][random.below(2) as usize];
+    }
+    let walled: Vec<usize> = (0..D).filter(|&k| boundary.axes[k] == Axis::Walls).collect();
+    // A plate across a walled axis, its hole along another walled axis if there is one.
+    if random.below(2) == 0 && !walled.is_empty() {
+        let axis = walled[0];
+        let side = boundary.extent();
+        let hole =
+            walled.get(1).map(|&along| Hole { along, from: 0.3 * side[along], to: (0.5 + 0.2 * random.uniform()) * side[along] });
+        boundary.partitions.push(Partition { axis, position: 0.5 * side[axis], hole });
+    }
+    let mut rules = Rules::default();
+    if random.below(3) == 0 {
+        rules.restitution = 0.5 + 0.5 * random.uniform();
+        rules.elastic_below = 0.05;
+    }
+    if random.below(3) == 0 {
+        // Along walled axes, where it cannot heat the system for ever.
+        walled.iter().for_each(|&k| rules.field[k] = random.normal());
+    }
+    let mut particles = Particles::new();
+    let wanted = 4 + random.below(21) as usize;
+    let large = random.below(3) == 0;
+    for attempt in 0..4000 {
+        if particles.len() == wanted {
+            break;
+        }
+        let radius =
+            if large && particles.is_empty() && attempt < 100 { 1.0 } else { 0.1 + 0.3 * random.uniform() * random.uniform() };
+        let place = Vector::from_fn(|k| boundary.upper[k] * random.uniform());
+        let velocity = Vector::from_fn(|_| random.normal());
+        let mass = 100f64.powf(random.uniform() - 0.5) * if large && attempt == 0 { 20.0 } else { 1.0 };
+        let mut candidate = particles.clone();
+        candidate.push(place, velocity, mass, radius, 0);
+        if boundary.validate_particles(&candidate).is_ok() {
+            particles = candidate;
+        }
+    }
+    (boundary, particles, rules)
 }
