@@ -5,6 +5,8 @@
 
 mod drawing;
 mod ensemble;
+mod experiments;
+pub mod free;
 mod gas;
 pub mod parameter;
 pub mod simulation;
@@ -33,7 +35,8 @@ pub struct Experiment {
 }
 
 /// All experiments, in the order in which they are listed.
-pub static REGISTRY: &[&Experiment] = &[];
+pub static REGISTRY: &[&Experiment] =
+    &[&experiments::entropy::EXPERIMENT, &experiments::ideal_gas::EXPERIMENT, &experiments::three_body::EXPERIMENT, &experiments::wave::EXPERIMENT];
 
 /// The experiment of this name.
 ///

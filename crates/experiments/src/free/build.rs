@@ -1,0 +1,374 @@
+//! From the description of a free system to an engine, every number checked on the way.
+
+use corpuscle_core::{Axis, Boundary, Contact, Engine, Failure, Hole, Invalid, Observer, Particles, Partition, Random, Vector};
+use corpuscle_event::{EventDriven, Rules};
+use corpuscle_time::{
+    Force, Gravity, Integrator, LennardJones, PairForce, Pin, Spring, Springs, TimeDriven, UniformField, WeeksChandlerAndersen,
+};
+
+use super::spec::{AxisName, EngineKind, Face, Faces, System};
+use crate::gas;
+
+/// Particles a scenario may ask for: an explicit limit instead of a machine without memory.
+const MOST_PARTICLES: usize = 2_000_000;
+
+/// One of the two engines, behind one name.
+pub(super) enum AnyEngine<const D: usize> {
+    /// Hard particles.
+    Event(Box<EventDriven<D>>),
+    /// Soft particles.
+    Time(Box<TimeDriven<D>>),
+}
+
+impl<const D: usize> AnyEngine<D> {
+    pub(super) fn time(&self) -> f64 {
+        match self {
+            Self::Event(engine) => engine.time(),
+            Self::Time(engine) => engine.time(),
+        }
+    }
+
+    pub(super) fn advance(&mut self, to: f64, observer: &mut impl Observer<D>) -> Result<(), Failure> {
+        match self {
+            Self::Event(engine) => engine.advance(to, observer),
+            Self::Time(engine) => engine.advance(to, observer),
+        }
+    }
+
+    pub(super) fn boundary(&self) -> &Boundary<D> {
+        match self {
+            Self::Event(engine) => engine.boundary(),
+            Self::Time(engine) => engine.boundary(),
+        }
+    }
+
+    pub(super) fn snapshot(&self) -> Particles<D> {
+        match self {
+            Self::Event(engine) => engine.snapshot(),
+            Self::Time(engine) => engine.snapshot(),
+        }
+    }
+
+    pub(super) fn unwrapped(&self, i: usize) -> Vector<D> {
+        match self {
+            Self::Event(engine) => engine.unwrapped(i),
+            Self::Time(engine) => engine.unwrapped(i),
+        }
+    }
+
+    /// Kinetic and potential energy now.
+    pub(super) fn energies(&self) -> (f64, f64) {
+        match self {
+            Self::Event(engine) => (engine.kinetic_energy(), engine.potential_energy()),
+            Self::Time(engine) => (engine.kinetic_energy(), engine.potential_energy()),
+        }
+    }
+}
+
+/// A system ready to run.
+pub(super) struct Built<const D: usize> {
+    pub(super) engine: AnyEngine<D>,
+    /// Names of the species, in the order of their indices.
+    pub(super) names: Vec<String>,
+    /// Particles whose path is drawn.
+    pub(super) trails: Vec<usize>,
+}
+
+/// Builds the engine.
+pub(super) fn build<const D: usize>(system: &System, seed: u64) -> Result<Built<D>, Invalid> {
+    positive("duration", system.duration)?;
+    if let Some(interval) = system.sample_interval {
+        positive("sample_interval", interval)?;
+    }
+    let boundary = boundary(system)?;
+    let mut names: Vec<String> = vec![];
+    let mut particles = Particles::<D>::new();
+    let (pins, trails) = place_singles(system, &mut names, &mut particles)?;
+    generate(system, &boundary, seed, &mut names, &mut particles)?;
+    if particles.is_empty() {
+        return Err(Invalid::new("particle", 0, "at least one particle, in [[particle]] or [[species]]"));
+    }
+    let engine = match system.engine {
+        EngineKind::Event => event_driven(system, boundary, particles, &pins)?,
+        EngineKind::Time => time_driven(system, boundary, particles, pins)?,
+    };
+    Ok(Built { engine, names, trails })
+}
+
+fn boundary<const D: usize>(system: &System) -> Result<Boundary<D>, Invalid> {
+    let room = &system.room;
+    let kind = |face: Face| match face {
+        Face::Periodic => Axis::Periodic,
+        Face::Walls => Axis::Walls,
+        Face::Open => Axis::Open,
+    };
+    let mut boundary = Boundary::new(array("box.lower", &room.lower)?, array("box.upper", &room.upper)?, Axis::Walls);
+    match &room.faces {
+        Faces::All(face) => boundary.axes = [kind(*face); D],
+        Faces::Each(faces) => {
+            let faces: [Face; D] = faces
+                .clone()
+                .try_into()
+                .map_err(|_| Invalid::new("box.faces", format!("{} words", faces.len()), format!("one word, or {D}")))?;
+            boundary.axes = faces.map(kind);
+        }
+    }
+    for (index, plate) in system.partitions.iter().enumerate() {
+        let key = |field: &str| format!("partition[{index}].{field}");
+        let hole = match &plate.hole {
+            None => None,
+            Some(hole) => Some(Hole { along: axis::<D>(&key("hole.along"), hole.along)?, from: hole.from, to: hole.to }),
+        };
+        boundary.partitions.push(Partition { axis: axis::<D>(&key("axis"), plate.axis)?, position: plate.position, hole });
+    }
+    boundary.validate()?;
+    Ok(boundary)
+}
+
+/// Index of a species of this name, added when new.
+fn species(names: &mut Vec<String>, name: &str) -> u16 {
+    let place = names.iter().position(|known| known == name).unwrap_or_else(|| {
+        names.push(name.into());
+        names.len() - 1
+    });
+    u16::try_from(place).unwrap_or(u16::MAX)
+}
+
+type Held<const D: usize> = (Vec<Pin<D>>, Vec<usize>);
+
+fn place_singles<const D: usize>(
+    system: &System,
+    names: &mut Vec<String>,
+    particles: &mut Particles<D>,
+) -> Result<Held<D>, Invalid> {
+    let (mut pins, mut trails) = (vec![], vec![]);
+    for (index, single) in system.particles.iter().enumerate() {
+        let key = |field: &str| format!("particle[{index}].{field}");
+        let velocity = if single.velocity.is_empty() { [0.0; D] } else { array(&key("velocity"), &single.velocity)? };
+        not_negative(&key("mass"), single.mass)?;
+        not_negative(&key("radius"), single.radius)?;
+        let position = array(&key("position"), &single.position)?;
+        let particle = particles.push(Vector(position), Vector(velocity), single.mass, single.radius, species(names, &single.name));
+        if !single.held.is_empty() {
+            let mut axes = [false; D];
+            for &name in &single.held {
+                axes[axis::<D>(&key("held"), name)?] = true;
+            }
+            pins.push(Pin { particle, axes });
+        }
+        if single.trail {
+            trails.push(particle);
+        }
+    }
+    Ok((pins, trails))
+}
+
+fn generate<const D: usize>(
+    system: &System,
+    boundary: &Boundary<D>,
+    seed: u64,
+    names: &mut Vec<String>,
+    particles: &mut Particles<D>,
+) -> Result<(), Invalid> {
+    for (index, group) in system.species.iter().enumerate() {
+        let key = |field: &str| format!("species[{index}].{field}");
+        if group.count == 0 || particles.len() + group.count > MOST_PARTICLES {
+            return Err(Invalid::new(
+                key("count"),
+                group.count,
+                format!("1 or more, and at most {MOST_PARTICLES} particles in all"),
+            ));
+        }
+        positive(&key("mass"), group.mass)?;
+        not_negative(&key("radius"), group.radius)?;
+        not_negative(&key("temperature"), group.temperature)?;
+        let mut region = boundary.clone();
+        region.partitions.clear();
+        if let Some(lower) = &group.lower {
+            region.lower = Vector(array(&key("lower"), lower)?);
+        }
+        if let Some(upper) = &group.upper {
+            region.upper = Vector(array(&key("upper"), upper)?);
+        }
+        for k in 0..D {
+            // What is only a part of the box along an axis has edges there, whatever the faces of the box.
+            if region.lower[k] != boundary.lower[k] || region.upper[k] != boundary.upper[k] || boundary.axes[k] == Axis::Open {
+                region.axes[k] = Axis::Walls;
+            }
+            if region.lower[k] < boundary.lower[k] || region.upper[k] > boundary.upper[k] || region.lower[k] >= region.upper[k] {
+                return Err(Invalid::new(
+                    key("lower"),
+                    format!("{:?} to {:?}", region.lower.0, region.upper.0),
+                    format!("a part of the box, {:?} to {:?}", boundary.lower.0, boundary.upper.0),
+                ));
+            }
+        }
+        let mut random = Random::new(seed, index as u64);
+        let mut fresh = particles.clone();
+        let kind = gas::Species { count: group.count, radius: group.radius, mass: group.mass, index: species(names, &group.name) };
+        gas::add(&mut fresh, &region, kind, &mut random)
+            .map_err(|error| Invalid::new(key("count"), group.count, error.expected))?;
+        let spread = (group.temperature / group.mass).sqrt();
+        for i in particles.len()..fresh.len() {
+            fresh.velocity[i] = Vector::from_fn(|_| spread * random.normal());
+        }
+        *particles = fresh;
+    }
+    Ok(())
+}
+
+fn event_driven<const D: usize>(
+    system: &System,
+    boundary: Boundary<D>,
+    particles: Particles<D>,
+    pins: &[Pin<D>],
+) -> Result<AnyEngine<D>, Invalid> {
+    let refuse = |key: &str| Err(Invalid::new(key, "given", "nothing: the event-driven engine has none; choose engine = \"time\""));
+    if !system.springs.is_empty() {
+        return refuse("spring");
+    }
+    if system.forces.is_some() {
+        return refuse("forces");
+    }
+    if system.integrator.is_some() {
+        return refuse("integrator");
+    }
+    if !pins.is_empty() {
+        return refuse("particle.held");
+    }
+    if let Some(i) = particles.mass.iter().position(|&mass| mass <= 0.0) {
+        return Err(Invalid::new(
+            format!("mass of particle {i}"),
+            particles.mass[i],
+            "a positive mass: hard particles exchange momentum",
+        ));
+    }
+    let mut rules = Rules { field: field(system)?, ..Rules::default() };
+    if let Some(collisions) = &system.collisions {
+        (rules.restitution, rules.elastic_below) = (collisions.restitution, collisions.elastic_below);
+    }
+    rules.validate().map_err(|error| Invalid { key: format!("collisions.{}", error.key), ..error })?;
+    Ok(AnyEngine::Event(Box::new(EventDriven::new(boundary, particles, rules)?)))
+}
+
+fn time_driven<const D: usize>(
+    system: &System,
+    boundary: Boundary<D>,
+    particles: Particles<D>,
+    pins: Vec<Pin<D>>,
+) -> Result<AnyEngine<D>, Invalid> {
+    if system.collisions.is_some() {
+        return Err(Invalid::new("collisions", "given", "nothing: the time-driven engine has none; choose engine = \"event\""));
+    }
+    let Some(stepper) = &system.integrator else {
+        return Err(Invalid::new("integrator", "missing", "name and time_step of an integrator, for engine = \"time\""));
+    };
+    let integrator = match (stepper.name.as_str(), stepper.time_step) {
+        ("gauss-radau-15", None) => Integrator::GaussRadau15 { tolerance: 1e-9, first_step: None },
+        (_, None) => return Err(Invalid::new("integrator.time_step", "missing", "a positive number")),
+        (name, Some(step)) => Integrator::from_name(name, step).map_err(|error| {
+            let key = if error.key == "integrator" { "integrator.name".into() } else { "integrator.time_step".to_string() };
+            Invalid { key, ..error }
+        })?,
+    };
+    let mut forces: Vec<Box<dyn Force<D>>> = vec![];
+    if let Some(given) = &system.forces {
+        if let Some(gravity) = &given.gravity {
+            not_negative("forces.gravity.constant", gravity.constant)?;
+            not_negative("forces.gravity.softening", gravity.softening)?;
+            forces.push(Box::new(Gravity::new(gravity.constant, gravity.softening)));
+        }
+        if let Some(pair) = &given.lennard_jones {
+            let cutoff = pair.cutoff.unwrap_or(2.5);
+            positive("forces.lennard_jones.epsilon", pair.epsilon)?;
+            positive("forces.lennard_jones.sigma", pair.sigma)?;
+            positive("forces.lennard_jones.cutoff", cutoff)?;
+            forces.push(Box::new(PairForce::new(LennardJones {
+                epsilon: pair.epsilon,
+                sigma: pair.sigma,
+                cutoff: cutoff * pair.sigma,
+            })));
+        }
+        if let Some(pair) = &given.wca {
+            positive("forces.wca.epsilon", pair.epsilon)?;
+            positive("forces.wca.sigma", pair.sigma)?;
+            if let Some(cutoff) = pair.cutoff {
+                return Err(Invalid::new(
+                    "forces.wca.cutoff",
+                    cutoff,
+                    "nothing: this potential is cut at its minimum, 2^(1/6) sigma",
+                ));
+            }
+            forces.push(Box::new(PairForce::new(WeeksChandlerAndersen::new(pair.epsilon, pair.sigma))));
+        }
+    }
+    if !system.springs.is_empty() {
+        forces.push(Box::new(Springs::new(springs(system, particles.len())?)));
+    }
+    let uniform = field::<D>(system)?;
+    if uniform != Vector::ZERO {
+        forces.push(Box::new(UniformField::new(uniform)));
+    }
+    let engine = TimeDriven::new(boundary, particles, forces, integrator)?;
+    Ok(AnyEngine::Time(Box::new(if pins.is_empty() { engine } else { engine.with_pins(pins)? })))
+}
+
+fn springs(system: &System, particles: usize) -> Result<Vec<Spring>, Invalid> {
+    let mut springs = vec![];
+    for (index, bond) in system.springs.iter().enumerate() {
+        let key = |field: &str| format!("spring[{index}].{field}");
+        for (field, end) in [("first", bond.first), ("second", bond.second)] {
+            if end >= particles {
+                return Err(Invalid::new(key(field), end, format!("the index of a particle, 0 to {}", particles - 1)));
+            }
+        }
+        if bond.first == bond.second {
+            return Err(Invalid::new(key("second"), bond.second, "another particle than the first"));
+        }
+        not_negative(&key("stiffness"), bond.stiffness)?;
+        not_negative(&key("rest_length"), bond.rest_length)?;
+        not_negative(&key("damping"), bond.damping)?;
+        let mut spring = Spring::new(bond.first, bond.second, bond.stiffness, bond.rest_length);
+        spring.damping = bond.damping;
+        springs.push(spring);
+    }
+    Ok(springs)
+}
+
+fn field<const D: usize>(system: &System) -> Result<Vector<D>, Invalid> {
+    if system.field.is_empty() { Ok(Vector::ZERO) } else { array("field", &system.field).map(Vector) }
+}
+
+fn axis<const D: usize>(key: &str, name: AxisName) -> Result<usize, Invalid> {
+    let index = name as usize;
+    if index < D { Ok(index) } else { Err(Invalid::new(key, "z", "x or y: the box is a plane")) }
+}
+
+fn array<const D: usize>(key: &str, list: &[f64]) -> Result<[f64; D], Invalid> {
+    match list.try_into() {
+        Ok(array) if list.iter().all(|x| x.is_finite()) => Ok(array),
+        _ => Err(Invalid::new(key, format!("{list:?}"), format!("{D} finite numbers, as many as box.lower has"))),
+    }
+}
+
+fn positive(key: &str, value: f64) -> Result<(), Invalid> {
+    if value > 0.0 && value.is_finite() { Ok(()) } else { Err(Invalid::new(key, value, "a positive number")) }
+}
+
+fn not_negative(key: &str, value: f64) -> Result<(), Invalid> {
+    if value >= 0.0 && value.is_finite() { Ok(()) } else { Err(Invalid::new(key, value, "a number, zero or more")) }
+}
+
+/// Contacts of either engine, counted by what was met.
+#[derive(Debug, Default)]
+pub(super) struct ContactCounter {
+    /// All contacts.
+    pub(super) contacts: u64,
+}
+
+impl<const D: usize> Observer<D> for ContactCounter {
+    fn contact(&mut self, _: &Contact<D>) -> std::ops::ControlFlow<()> {
+        self.contacts += 1;
+        std::ops::ControlFlow::Continue(())
+    }
+}

@@ -1,0 +1,292 @@
+//! The description of a free system, as a scenario file spells it.
+
+use serde::{Deserialize, Serialize};
+
+/// A system of the user's own: box, particles, interactions, engine, and what to observe for how long.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct System {
+    /// Title shown on pictures and the report.
+    #[serde(default = "default_title")]
+    pub title: String,
+    /// Which dynamics.
+    pub engine: EngineKind,
+    /// Physical time to run.
+    pub duration: f64,
+    /// Physical time between samples; a five-hundredth of the duration when not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sample_interval: Option<f64>,
+    /// The box; its corners have two or three coordinates, which sets the dimension.
+    #[serde(rename = "box")]
+    pub room: Room,
+    /// Thin hard plates in the box (event-driven engine).
+    #[serde(default, rename = "partition", skip_serializing_if = "Vec::is_empty")]
+    pub partitions: Vec<Plate>,
+    /// Particles generated in number, without overlap.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub species: Vec<Species>,
+    /// Particles placed one by one; their indices come before those of generated ones.
+    #[serde(default, rename = "particle", skip_serializing_if = "Vec::is_empty")]
+    pub particles: Vec<Single>,
+    /// Springs between particles (time-driven engine).
+    #[serde(default, rename = "spring", skip_serializing_if = "Vec::is_empty")]
+    pub springs: Vec<Bond>,
+    /// Uniform acceleration of all particles; none when left out.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub field: Vec<f64>,
+    /// Rules of collision (event-driven engine).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub collisions: Option<Collisions>,
+    /// Forces between particles (time-driven engine).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub forces: Option<Forces>,
+    /// Integrator and its step (time-driven engine).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub integrator: Option<Stepper>,
+    /// What to measure beside energy and momentum.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub observe: Vec<Observable>,
+}
+
+fn default_title() -> String {
+    "A system of one's own".into()
+}
+
+/// The two engines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum EngineKind {
+    /// Hard particles, from collision to collision.
+    Event,
+    /// Soft particles, in steps of time.
+    Time,
+}
+
+/// The box.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Room {
+    /// Lower corner.
+    pub lower: Vec<f64>,
+    /// Upper corner.
+    pub upper: Vec<f64>,
+    /// Kind of the faces: one word for all axes, or one word an axis.
+    pub faces: Faces,
+}
+
+/// One word for all axes, or one word an axis.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(untagged)]
+pub enum Faces {
+    /// The same across every axis.
+    All(Face),
+    /// One an axis.
+    Each(Vec<Face>),
+}
+
+/// Kind of the two faces across an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Face {
+    /// Out at one side, in at the other.
+    Periodic,
+    /// Hard walls.
+    Walls,
+    /// None.
+    Open,
+}
+
+/// Name of an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum AxisName {
+    /// The first.
+    X,
+    /// The second.
+    Y,
+    /// The third.
+    Z,
+}
+
+/// A thin hard plate.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Plate {
+    /// Axis the plate is perpendicular to.
+    pub axis: AxisName,
+    /// Its coordinate along that axis.
+    pub position: f64,
+    /// Its opening.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hole: Option<Opening>,
+}
+
+/// An opening in a plate.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Opening {
+    /// Axis along which it is measured.
+    pub along: AxisName,
+    /// Where it starts.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+}
+
+/// Particles generated in number.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Species {
+    /// Name shown in the legend.
+    #[serde(default = "default_name")]
+    pub name: String,
+    /// How many.
+    pub count: usize,
+    /// Mass of each.
+    #[serde(default = "one")]
+    pub mass: f64,
+    /// Radius of each.
+    pub radius: f64,
+    /// Temperature of their start, `k_B T`.
+    #[serde(default = "one")]
+    pub temperature: f64,
+    /// Lower corner of the part of the box they start in; the box's own when not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lower: Option<Vec<f64>>,
+    /// Upper corner of that part.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub upper: Option<Vec<f64>>,
+}
+
+fn default_name() -> String {
+    "particles".into()
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+/// A particle placed by hand.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Single {
+    /// Name of its species shown in the legend.
+    #[serde(default = "default_name")]
+    pub name: String,
+    /// Position.
+    pub position: Vec<f64>,
+    /// Velocity; at rest when left out.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub velocity: Vec<f64>,
+    /// Mass.
+    #[serde(default = "one")]
+    pub mass: f64,
+    /// Radius.
+    #[serde(default)]
+    pub radius: f64,
+    /// Axes along which it is held in place (time-driven engine).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub held: Vec<AxisName>,
+    /// Whether its path is drawn.
+    #[serde(default)]
+    pub trail: bool,
+}
+
+/// A spring between two particles.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Bond {
+    /// Index of one end.
+    pub first: usize,
+    /// Index of the other.
+    pub second: usize,
+    /// Stiffness `kappa`.
+    pub stiffness: f64,
+    /// Length at rest.
+    #[serde(default)]
+    pub rest_length: f64,
+    /// Damping coefficient along the spring.
+    #[serde(default)]
+    pub damping: f64,
+}
+
+/// Rules of collision.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Collisions {
+    /// Coefficient of restitution, 1 for elastic.
+    #[serde(default = "one")]
+    pub restitution: f64,
+    /// Normal approach speed below which a contact is elastic whatever the restitution, against inelastic collapse.
+    #[serde(default)]
+    pub elastic_below: f64,
+}
+
+/// Forces between particles, each of all pairs.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Forces {
+    /// Newton's gravity.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gravity: Option<Gravitation>,
+    /// The Lennard-Jones potential, truncated and shifted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lennard_jones: Option<Contact>,
+    /// Its repulsive part (Weeks, Chandler, Andersen).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wca: Option<Contact>,
+}
+
+/// Newton's gravity.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Gravitation {
+    /// Constant of gravity.
+    #[serde(default = "one")]
+    pub constant: f64,
+    /// Plummer softening length.
+    #[serde(default)]
+    pub softening: f64,
+}
+
+/// A pair potential of energy scale `epsilon` and length scale `sigma`.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Contact {
+    /// Depth.
+    #[serde(default = "one")]
+    pub epsilon: f64,
+    /// Diameter.
+    #[serde(default = "one")]
+    pub sigma: f64,
+    /// Cutoff in units of `sigma`; 2.5 when not given. The repulsive part has its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cutoff: Option<f64>,
+}
+
+/// Integrator and its step.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Stepper {
+    /// Name: explicit-euler, symplectic-euler, velocity-verlet, runge-kutta-4, yoshida-4 or gauss-radau-15.
+    pub name: String,
+    /// Time step; the adaptive integrator takes none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time_step: Option<f64>,
+}
+
+/// What can be measured in a free system.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Observable {
+    /// Kinetic temperature against time.
+    Temperature,
+    /// Pressure on the walls and from the virial.
+    Pressure,
+    /// Distribution of speeds against Maxwell's.
+    Speeds,
+    /// Mean squared displacement.
+    MeanSquaredDisplacement,
+    /// Radial distribution function.
+    RadialDistribution,
+}
