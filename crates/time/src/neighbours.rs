@@ -158,7 +158,8 @@ impl<const D: usize> Cells<D> {
                 let shifted = place[k] + number % 3; // one too high: offsets are -1, 0, 1
                 number /= 3;
                 let inside = (1..=count).contains(&shifted);
-                if !inside && !(self.wraps[k] && count > 1) {
+                let around = self.wraps[k] && count > 1;
+                if !(inside || around) {
                     continue 'offsets;
                 }
                 near += stride * ((shifted + count - 1) % count);

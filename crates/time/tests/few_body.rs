@@ -11,7 +11,7 @@ fn system<const D: usize>(bodies: &[(f64, [f64; D], [f64; D])], integrator: Inte
         particles.push(Vector(position), Vector(velocity), mass, 0.0, 0);
     }
     let space = Boundary::new([-5.0; D], [5.0; D], Axis::Open);
-    TimeDriven::new(space, particles, vec![Box::new(Gravity::new(1.0, 0.0))], integrator).unwrap()
+    TimeDriven::new(space, particles, vec![Box::new(Gravity::new(1.0, 0.0))], integrator).expect("a valid system")
 }
 
 /// Chenciner and Montgomery 2000, doi:10.2307/2661357; initial values of Simo, to 8 digits.

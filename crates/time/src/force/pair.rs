@@ -6,9 +6,6 @@ use super::{Force, massive, positive};
 use crate::image::NearestImage;
 use crate::neighbours::Neighbours;
 
-/// Pairs handled together in the kernel. The number is part of no result: sums run over one pair at a time.
-const LANES: usize = 8;
-
 /// A spherically symmetric potential of finite range. All that a new one needs is in its file; neighbour lists, virial and
 /// checks come with [`PairForce`].
 pub trait PairPotential: Send {
@@ -41,8 +38,37 @@ pub trait PairPotential: Send {
 pub struct PairForce<P, const D: usize> {
     potential: P,
     neighbours: Neighbours<D>,
-    position: [Vec<f64>; D],
-    force: [Vec<f64>; D],
+    force: Vec<Vector<D>>,
+    near: Near<D>,
+}
+
+/// The neighbours of one particle that are within range, one array a quantity; longer than there are such neighbours.
+struct Near<const D: usize> {
+    index: Vec<u32>,
+    arrow: Vec<Vector<D>>,
+    /// Square of the distance; then, in its place, the force over the distance.
+    scale: Vec<f64>,
+}
+
+impl<const D: usize> Near<D> {
+    /// Collects those of `candidates` that are within range of `r`, in their order; returns their number.
+    #[inline]
+    fn collect(&mut self, image: &NearestImage<D>, range: f64, r: Vector<D>, candidates: &[u32], position: &[Vector<D>]) -> usize {
+        if self.index.len() < candidates.len() {
+            self.index.resize(candidates.len(), 0);
+            self.arrow.resize(candidates.len(), Vector::ZERO);
+            self.scale.resize(candidates.len(), 0.0);
+        }
+        // Written without a branch, which would be mispredicted for every third candidate.
+        let mut count = 0;
+        for &j in candidates {
+            let arrow = image.displacement(r, position[j as usize]);
+            let r_squared = arrow.norm_squared();
+            (self.index[count], self.arrow[count], self.scale[count]) = (j, arrow, r_squared);
+            count += usize::from(r_squared < range);
+        }
+        count
+    }
 }
 
 impl<P: PairPotential, const D: usize> PairForce<P, D> {
@@ -56,8 +82,7 @@ impl<P: PairPotential, const D: usize> PairForce<P, D> {
     /// holds more pairs.
     pub fn with_skin(potential: P, skin: f64) -> Self {
         let neighbours = Neighbours::new(potential.cutoff(), skin);
-        let empty = || std::array::from_fn(|_| vec![]);
-        Self { potential, neighbours, position: empty(), force: empty() }
+        Self { potential, neighbours, force: vec![], near: Near { index: vec![], arrow: vec![], scale: vec![] } }
     }
 
     /// The potential.
@@ -94,27 +119,6 @@ impl<P: PairPotential, const D: usize> PairForce<P, D> {
         }
         sum
     }
-
-    /// Arrows from `r` to a block of particles, and the force over the distance of each pair: zero out of range.
-    #[inline]
-    fn block(&self, image: &NearestImage<D>, range: f64, r: [f64; D], block: &[u32; LANES]) -> ([[f64; LANES]; D], [f64; LANES]) {
-        let mut arrow = [[0.0; LANES]; D];
-        let mut r_squared = [0.0; LANES];
-        for k in 0..D {
-            for lane in 0..LANES {
-                arrow[k][lane] = self.position[k][block[lane] as usize];
-            }
-            for lane in 0..LANES {
-                arrow[k][lane] = image.component(k, arrow[k][lane] - r[k]);
-                r_squared[lane] += arrow[k][lane] * arrow[k][lane];
-            }
-        }
-        let scale = r_squared.map(|r_squared| {
-            let scale = self.potential.force_over_distance(r_squared);
-            if r_squared < range { scale } else { 0.0 }
-        });
-        (arrow, scale)
-    }
 }
 
 impl<P: PairPotential, const D: usize> Force<D> for PairForce<P, D> {
@@ -126,45 +130,26 @@ impl<P: PairPotential, const D: usize> Force<D> for PairForce<P, D> {
         self.neighbours.update(boundary, &particles.position);
         let image = NearestImage::new(boundary);
         let range = self.potential.cutoff() * self.potential.cutoff();
-        let n = particles.len();
-        for k in 0..D {
-            self.position[k].clear();
-            self.position[k].extend(particles.position.iter().map(|r| r[k]));
-        }
-        let mut force = std::mem::replace(&mut self.force, std::array::from_fn(|_| vec![]));
-        for component in &mut force {
-            component.clear();
-            component.resize(n, 0.0);
-        }
-        for i in 0..n {
-            let r: [f64; D] = std::array::from_fn(|k| self.position[k][i]);
-            let mut total = [0.0; D];
-            let neighbours = self.neighbours.of(i);
-            for start in (0..neighbours.len()).step_by(LANES) {
-                let members = &neighbours[start..neighbours.len().min(start + LANES)];
-                // The last block is filled up with copies of its first pair, which are left out of the sum.
-                let mut block = [members[0]; LANES];
-                block[..members.len()].copy_from_slice(members);
-                let (arrow, scale) = self.block(&image, range, r, &block);
-                for (lane, &j) in members.iter().enumerate() {
-                    for k in 0..D {
-                        let f = scale[lane] * arrow[k][lane];
-                        force[k][j as usize] += f;
-                        total[k] -= f;
-                    }
-                }
+        let position = &particles.position;
+        let (force, near) = (&mut self.force, &mut self.near);
+        force.clear();
+        force.resize(position.len(), Vector::ZERO);
+        for (i, &r) in position.iter().enumerate() {
+            let mut total = Vector::ZERO;
+            let count = near.collect(&image, range, r, self.neighbours.of(i), position);
+            for scale in &mut near.scale[..count] {
+                *scale = self.potential.force_over_distance(*scale);
             }
-            for k in 0..D {
-                force[k][i] += total[k];
+            for ((&j, &arrow), &scale) in near.index[..count].iter().zip(&near.arrow[..count]).zip(&near.scale[..count]) {
+                let f = arrow * scale;
+                force[j as usize] += f;
+                total -= f;
             }
+            force[i] += total;
         }
-        for (i, a) in acceleration.iter_mut().enumerate() {
-            let inverse_mass = 1.0 / particles.mass[i];
-            for k in 0..D {
-                a[k] += force[k][i] * inverse_mass;
-            }
+        for ((a, f), mass) in acceleration.iter_mut().zip(force).zip(&particles.mass) {
+            *a += *f * (1.0 / mass);
         }
-        self.force = force;
     }
 
     fn energy(&self, _: f64, boundary: &Boundary<D>, particles: &Particles<D>) -> f64 {

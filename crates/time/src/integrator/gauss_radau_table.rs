@@ -4,6 +4,7 @@
 pub(super) const ORDER: usize = 7;
 
 /// The left Gauss-Radau nodes on `[0, 1]`: `x = 2 h - 1` is a root of `P_7 + P_8`, Legendre's polynomials.
+#[allow(clippy::excessive_precision)] // digits to check against other tables
 pub(super) const NODES: [f64; ORDER + 1] = [
     0.0,
     0.056_262_560_536_922_146_465_652_191_031_8,
@@ -108,7 +109,7 @@ mod tests {
     }
 
     /// The integral over the step of a force `h^d` sampled at the nodes is `1/(d + 1)` for `d <= 14` and no further: eight
-    /// Radau nodes make a quadrature of degree 14, hence a method of order 15 (Butcher 1964, doi:10.1090/S0025-5718-1964-0159424-9).
+    /// Radau nodes make a quadrature of degree 14, hence a method of order 15 (Butcher 1964).
     #[test]
     fn the_quadrature_has_degree_fourteen() {
         let table = Table::new();
