@@ -25,6 +25,11 @@ pub(crate) fn side<const D: usize>(count: usize, radius: f64, packing: f64) -> f
     if D == 2 { volume.sqrt() } else { libm::cbrt(volume) } // sqrt and libm: the same bits on every platform
 }
 
+/// Packing fraction of `count` balls of this radius in a cube (square): the inverse of [`side`].
+pub(crate) fn packing<const D: usize>(count: usize, radius: f64, side: f64) -> f64 {
+    count as f64 * ball_volume::<D>(radius) / side.powi(D as i32)
+}
+
 /// Adds a species at rest, on randomly chosen sites of a lattice in `region`, which may be a part of the system's box,
 /// clear of all particles that are there already.
 ///

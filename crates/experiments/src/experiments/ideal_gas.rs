@@ -1,0 +1,335 @@
+//! The ideal gas law, measured: hard particles between walls, one sweep each for Boyle, Charles and Avogadro.
+//!
+//! Every state point is run in several replicas, all of them independent; one more set of dense gases shows how the law fails.
+//! Standard errors come from the replicas: the pressure of an isolated gas has a memory (see the chart `averaging`), so that
+//! counting its hits would not give them.
+
+mod charts;
+mod checks;
+mod system;
+mod theory;
+
+use corpuscle_core::{Axis, Engine, Failure, Invalid, Random};
+use corpuscle_observe::{Chart, Check, Estimate};
+use corpuscle_scene::{Colouring, Scene};
+
+use crate::drawing::add_event_driven;
+use crate::simulation::{Honesty, Simulation, Table};
+use crate::{Experiment, Kind, Parameter, Settings, ensemble, gas};
+use system::{Pace, State, System};
+
+/// Samples a crossing of the box, `a / sqrt(kT/m)`.
+const SAMPLES_PER_CROSSING: f64 = 20.0;
+/// Crossings of the slowest gas before the measurement: the lattice of the start is forgotten.
+const WARM_UP: f64 = 4.0;
+/// Collisions of a particle between two snapshots of the speeds: they are independent then.
+const COLLISIONS_BETWEEN_SNAPSHOTS: f64 = 10.0;
+
+/// The experiment.
+pub(crate) static EXPERIMENT: Experiment = Experiment {
+    name: "ideal-gas",
+    title: "Ideal gas law",
+    summary: "Hard particles between walls: the pressure from wall hits and from the virial theorem, against volume, temperature \
+              and number of particles, beside the laws of Boyle, Charles and Avogadro and the excess that the particles' size adds.",
+    dimensions: &[2, 3],
+    engines: &["event-driven"],
+    parameters: &[
+        Parameter {
+            name: "dimension",
+            unit: "",
+            help: "Discs in a square, or spheres in a cube.",
+            kind: Kind::Choice { default: "2", options: &["2", "3"] },
+        },
+        Parameter {
+            name: "particles",
+            unit: "",
+            help: "Number N of particles at the base state, the one in the window.",
+            kind: Kind::Whole { default: 200, least: 20, most: 20_000 },
+        },
+        Parameter {
+            name: "packing_fraction",
+            unit: "",
+            help: "Part of the base volume that the particles fill; the gas is the more ideal, the smaller it is.",
+            kind: Kind::Real { default: 0.01, least: 1e-4, most: 0.05 },
+        },
+        Parameter {
+            name: "temperature",
+            unit: "",
+            help: "Temperature kT of the base state, as an energy.",
+            kind: Kind::Real { default: 1.0, least: 1e-6, most: 1e6 },
+        },
+        Parameter {
+            name: "mass",
+            unit: "",
+            help: "Mass m of a particle.",
+            kind: Kind::Real { default: 1.0, least: 1e-6, most: 1e6 },
+        },
+        Parameter {
+            name: "radius",
+            unit: "",
+            help: "Radius R of a particle.",
+            kind: Kind::Real { default: 0.5, least: 1e-6, most: 1e6 },
+        },
+        Parameter {
+            name: "span",
+            unit: "",
+            help: "Each sweep goes from the base state down to this part of its pressure: volume times, temperature and number over it.",
+            kind: Kind::Real { default: 4.0, least: 1.5, most: 10.0 },
+        },
+        Parameter {
+            name: "points",
+            unit: "",
+            help: "State points of each law, the base state among them.",
+            kind: Kind::Whole { default: 5, least: 3, most: 20 },
+        },
+        Parameter {
+            name: "dense_packings",
+            unit: "",
+            help: "Packing fractions of dense gases in periodic boxes, held against the equation of state.",
+            kind: Kind::List { default: &[0.05, 0.1, 0.2, 0.3], least: 0.01, most: 0.3, longest: 10 },
+        },
+        Parameter {
+            name: "replicas",
+            unit: "",
+            help: "Independent repetitions of every state point, which give the standard errors.",
+            kind: Kind::Whole { default: 10, least: 3, most: 200 },
+        },
+        Parameter {
+            name: "duration",
+            unit: "a/sqrt(kT/m)",
+            help: "Measuring time, in the times a thermal particle takes to cross the base box.",
+            kind: Kind::Real { default: 40.0, least: 5.0, most: 10_000.0 },
+        },
+    ],
+    start,
+};
+
+fn start(settings: &Settings) -> Result<Box<dyn Simulation>, Invalid> {
+    if settings.word("dimension") == "3" {
+        Ok(Box::new(Laboratory::<3>::new(settings)?))
+    } else {
+        Ok(Box::new(Laboratory::<2>::new(settings)?))
+    }
+}
+
+/// One of the three laws, each a sweep from the base state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Law {
+    /// `P` against `1/V_acc`.
+    Boyle,
+    /// `P` against `T`; Gay-Lussac and Amontons at constant volume.
+    Charles,
+    /// `P` against `N`.
+    Avogadro,
+}
+
+impl Law {
+    const ALL: [Self; 3] = [Self::Boyle, Self::Charles, Self::Avogadro];
+
+    /// The state with this part of the base pressure.
+    fn state<const D: usize>(self, base: State, part: f64) -> State {
+        match self {
+            Self::Boyle => {
+                let packing = part * gas::packing::<D>(base.count, base.radius, base.side);
+                State { side: gas::side::<D>(base.count, base.radius, packing), ..base }
+            }
+            Self::Charles => State { temperature: part * base.temperature, ..base },
+            Self::Avogadro => State { count: (part * base.count as f64).round() as usize, ..base },
+        }
+    }
+
+    /// What the law is about.
+    fn abscissa<const D: usize>(self, state: &State) -> f64 {
+        match self {
+            Self::Boyle => 1.0 / state.volume::<D>(),
+            Self::Charles => state.temperature,
+            Self::Avogadro => state.count as f64,
+        }
+    }
+}
+
+/// A state point with its replicas.
+struct Point<const D: usize> {
+    state: State,
+    /// Compressibility factor that theory expects of this very box.
+    expected: f64,
+    replicas: Vec<System<D>>,
+}
+
+impl<const D: usize> Point<D> {
+    /// Mean over the replicas.
+    fn estimate(&self, measure: impl Fn(&System<D>) -> f64) -> Estimate {
+        Estimate::from_replicas(&self.replicas.iter().map(measure).collect::<Vec<_>>())
+    }
+
+    fn wall_pressure(&self) -> Estimate {
+        self.estimate(|system| system.wall_pressure(&system.totals(), system.duration()))
+    }
+
+    fn virial_pressure(&self) -> Estimate {
+        self.estimate(|system| system.virial_pressure(&system.totals(), system.duration()))
+    }
+
+    /// Pressure that theory expects.
+    fn expected_pressure(&self) -> f64 {
+        self.expected * self.state.ideal_pressure::<D>()
+    }
+}
+
+/// All state points.
+struct Laboratory<const D: usize> {
+    /// The base state, in the window.
+    base: Point<D>,
+    /// The sweeps without the base state, which belongs to all of them.
+    sweeps: Vec<(Law, Point<D>)>,
+    /// Dense gases in periodic boxes, each with its packing fraction.
+    dense: Vec<(f64, Point<D>)>,
+    pace: Pace,
+    /// Samples of a full measurement.
+    samples: u64,
+    time: f64,
+}
+
+impl<const D: usize> Laboratory<D> {
+    fn new(settings: &Settings) -> Result<Self, Invalid> {
+        let (count, radius, mass) = (settings.whole("particles"), settings.real("radius"), settings.real("mass"));
+        let packing = settings.real("packing_fraction");
+        let side = gas::side::<D>(count, radius, packing);
+        let base = State { count, temperature: settings.real("temperature"), side, radius, mass, axis: Axis::Walls };
+
+        let points = settings.whole("points");
+        let least = 1.0 / settings.real("span");
+        let parts = (0..points - 1).map(|k| least + (1.0 - least) * k as f64 / (points - 1) as f64);
+        let sweeps: Vec<(Law, State)> =
+            Law::ALL.iter().flat_map(|&law| parts.clone().map(move |part| (law, law.state::<D>(base, part)))).collect();
+
+        let crossing = |state: &State| state.open_side() / state.thermal_speed();
+        let slowest = sweeps.iter().map(|(_, state)| crossing(state)).fold(crossing(&base), f64::max);
+        let interval = crossing(&base) / SAMPLES_PER_CROSSING;
+        let pace = Pace {
+            interval,
+            clock: 1.0,
+            warm_up: (WARM_UP * slowest / interval).ceil() as u64,
+            between_snapshots: (COLLISIONS_BETWEEN_SNAPSHOTS / (base.collision_rate::<D>() * interval)).ceil() as u64,
+        };
+        let samples = (settings.real("duration") * SAMPLES_PER_CROSSING).round() as u64;
+
+        let mut stream = 0;
+        let mut point = |state: State, expected: f64, pace: Pace, keep: bool| -> Result<Point<D>, Invalid> {
+            stream += 1;
+            let replica = |r: u64| System::new(state, pace, keep, &mut Random::new(settings.seed, stream << 16 | r));
+            let replicas = (0..settings.whole("replicas") as u64).map(replica).collect::<Result<_, _>>()?;
+            Ok(Point { state, expected, replicas })
+        };
+        let walls = |state: &State| theory::between_walls::<D>(state.count, state.open_side(), 2.0 * state.radius);
+        Ok(Self {
+            base: point(base, walls(&base), pace, true)?,
+            sweeps: sweeps
+                .into_iter()
+                .map(|(law, state)| Ok((law, point(state, walls(&state), pace, false)?)))
+                .collect::<Result<_, Invalid>>()?,
+            dense: settings
+                .list("dense_packings")
+                .iter()
+                .map(|&packing| {
+                    let state = State { side: gas::side::<D>(count, radius, packing), axis: Axis::Periodic, ..base };
+                    let pace = Pace { clock: base.collision_rate::<D>() / state.collision_rate::<D>(), ..pace };
+                    Ok((packing, point(state, theory::periodic::<D>(count, packing), pace, false)?))
+                })
+                .collect::<Result<_, Invalid>>()?,
+            pace,
+            samples,
+            time: 0.0,
+        })
+    }
+
+    fn points(&self) -> impl Iterator<Item = &Point<D>> {
+        std::iter::once(&self.base)
+            .chain(self.sweeps.iter().map(|(_, point)| point))
+            .chain(self.dense.iter().map(|(_, point)| point))
+    }
+
+    /// The points of a law, the base state last.
+    fn sweep(&self, law: Law) -> impl Iterator<Item = &Point<D>> {
+        self.sweeps.iter().filter(move |(of, _)| *of == law).map(|(_, point)| point).chain(std::iter::once(&self.base))
+    }
+
+    /// Samples measured so far by every system.
+    fn measured(&self) -> u64 {
+        self.points().flat_map(|point| &point.replicas).map(|system| system.samples).min().unwrap_or(0)
+    }
+
+    /// Whether enough has been measured to say something: a tenth of the whole.
+    fn is_telling(&self) -> bool {
+        self.measured() > 0 && 10 * self.measured() >= self.samples
+    }
+}
+
+impl<const D: usize> Simulation for Laboratory<D> {
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn end(&self) -> f64 {
+        (self.pace.warm_up + self.samples) as f64 * self.pace.interval
+    }
+
+    fn advance(&mut self, to: f64) -> Result<(), Failure> {
+        let sweeps = self.sweeps.iter_mut().map(|(_, point)| point);
+        let all = std::iter::once(&mut self.base).chain(sweeps).chain(self.dense.iter_mut().map(|(_, point)| point));
+        let mut systems: Vec<&mut System<D>> = all.flat_map(|point| &mut point.replicas).collect();
+        ensemble::for_each(&mut systems, |system| system.advance(to))?;
+        self.time = self.time.max(to);
+        Ok(())
+    }
+
+    fn draw(&self, scene: &mut Scene) {
+        scene.clear();
+        scene.title = EXPERIMENT.title.into();
+        let state = self.base.state;
+        scene.caption = format!("N = {}, kT = {}, V_acc = {:.0}", state.count, state.temperature, state.volume::<D>());
+        if self.is_telling() {
+            let z = self.base.wall_pressure() / state.ideal_pressure::<D>();
+            scene.caption += &format!(
+                ": P V_acc/(N kT) = {:.4} ± {:.4} from the walls, {:.4} expected",
+                z.mean, z.standard_error, self.base.expected
+            );
+        } else {
+            scene.caption += ", warming up";
+        }
+        scene.colouring = Colouring::Speed { most: 3.0 * state.thermal_speed(), unit: String::new() };
+        add_event_driven(scene, &self.base.replicas[0].engine, |_| 0.0);
+    }
+
+    fn charts(&self) -> Vec<Chart> {
+        charts::all(self)
+    }
+
+    fn checks(&self) -> Vec<Check> {
+        checks::all(self)
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        vec![charts::table(self)]
+    }
+
+    fn honesty(&self) -> Honesty {
+        let systems = || self.points().flat_map(|point| &point.replicas);
+        let overlap = |system: &System<D>| {
+            let depth = system.engine.boundary().largest_overlap(&system.engine.snapshot());
+            depth / (2.0 * system.state.radius)
+        };
+        Honesty {
+            engine: "event-driven".into(),
+            work: systems().map(|system| system.engine.counts()).map(|counts| counts.collisions + counts.wall_collisions).sum(),
+            work_unit: "collisions",
+            energy_drift: systems().filter_map(|system| system.energy.largest()).reduce(f64::max),
+            largest_overlap: self.base.replicas.iter().map(overlap).reduce(f64::max),
+            ..Honesty::default()
+        }
+    }
+
+    fn moments(&self) -> Vec<f64> {
+        vec![0.0, self.pace.warm_up as f64 * self.pace.interval]
+    }
+}
