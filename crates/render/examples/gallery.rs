@@ -9,16 +9,15 @@ fn main() -> Result<(), RenderError> {
     let folder = PathBuf::from(std::env::args_os().nth(1).unwrap_or_else(|| "gallery".into()));
     std::fs::create_dir_all(&folder).map_err(|source| RenderError::Write { path: folder.clone(), source })?;
     let mut headless = Headless::new(1280, 800)?;
-    let scenes: [(&str, fn() -> Scene); 6] =
-        [("gas", gas), ("mixing", mixing), ("spheres", spheres), ("chain", chain), ("stars", stars), ("portrait", gas)];
-    for (name, scene) in scenes {
-        let scene = scene();
+    let scenes =
+        [("gas", gas()), ("mixing", mixing()), ("spheres", spheres()), ("chain", chain()), ("stars", stars()), ("portrait", gas())];
+    for (name, scene) in &scenes {
         for (suffix, palette) in [("dark", Palette::Dark), ("light", Palette::Light)] {
             let mut view = headless.view().palette(palette);
-            if name == "portrait" {
+            if *name == "portrait" {
                 (view.width, view.height, view.scale) = (1080, 1350, 1.5);
             }
-            headless.picture(&scene, &view)?.save(folder.join(format!("{name}-{suffix}.png")))?;
+            headless.picture(scene, &view)?.save(folder.join(format!("{name}-{suffix}.png")))?;
         }
     }
     Ok(())
@@ -154,13 +153,10 @@ fn stars() -> Scene {
     };
     let dt = 1e-3;
     for step in 0..5500 {
-        for i in 0..3 {
-            if step % 10 == 0 {
-                let point = TrailPoint { position: [x[i][0], x[i][1], 0.0], time: f64::from(step) * dt };
-                let trail = scene.trail(i as u32, 170, Colour::Accent(i as u8));
-                trail.width = 3.0;
-                trail.push(point);
-            }
+        for (i, x) in x.iter().enumerate().filter(|_| step % 10 == 0) {
+            let trail = scene.trail(i as u32, 170, Colour::Accent(i as u8));
+            trail.width = 3.0;
+            trail.push(TrailPoint { position: [x[0], x[1], 0.0], time: f64::from(step) * dt });
         }
         for (v, a) in v.iter_mut().zip([0, 1, 2].map(|i| acceleration(&x, i))) {
             *v = [v[0] + 0.5 * dt * a[0], v[1] + 0.5 * dt * a[1]];

@@ -11,7 +11,7 @@ use crate::RenderError;
 /// one to the other.
 pub(crate) struct Program {
     gl: Gl,
-    program: glow::Program,
+    handle: glow::Program,
     uniforms: HashMap<String, glow::UniformLocation>,
 }
 
@@ -24,7 +24,7 @@ impl Program {
         let fault = |log: String| RenderError::Shader { name, log };
         unsafe {
             let program = gl.create_program().map_err(RenderError::OpenGl)?;
-            let this = Self { gl: gl.clone(), program, uniforms: HashMap::new() };
+            let this = Self { gl: gl.clone(), handle: program, uniforms: HashMap::new() };
             for (stage, define) in
                 [(glow::VERTEX_SHADER, "#define VERTEX\n#define varying out\n"), (glow::FRAGMENT_SHADER, "#define varying in\n")]
             {
@@ -49,9 +49,9 @@ impl Program {
 
     fn with_uniforms(mut self) -> Self {
         unsafe {
-            for index in 0..self.gl.get_active_uniforms(self.program) {
-                if let Some(uniform) = self.gl.get_active_uniform(self.program, index)
-                    && let Some(place) = self.gl.get_uniform_location(self.program, &uniform.name)
+            for index in 0..self.gl.get_active_uniforms(self.handle) {
+                if let Some(uniform) = self.gl.get_active_uniform(self.handle, index)
+                    && let Some(place) = self.gl.get_uniform_location(self.handle, &uniform.name)
                 {
                     self.uniforms.insert(uniform.name.trim_end_matches("[0]").to_owned(), place);
                 }
@@ -62,9 +62,9 @@ impl Program {
 
     /// Sets a uniform for the draws to come; one the compiler has removed is passed over.
     pub(crate) fn set(&self, name: &str, value: impl Uniform) {
-        if let Some(place) = self.uniforms.get(name) {
+        if let Some(&place) = self.uniforms.get(name) {
             unsafe {
-                self.gl.use_program(Some(self.program));
+                self.gl.use_program(Some(self.handle));
                 value.send(&self.gl, place);
             }
         }
@@ -72,13 +72,13 @@ impl Program {
 
     /// Makes this the program of the draws to come.
     pub(crate) fn bind(&self) {
-        unsafe { self.gl.use_program(Some(self.program)) };
+        unsafe { self.gl.use_program(Some(self.handle)) };
     }
 }
 
 impl Drop for Program {
     fn drop(&mut self) {
-        unsafe { self.gl.delete_program(self.program) };
+        unsafe { self.gl.delete_program(self.handle) };
     }
 }
 
@@ -95,24 +95,24 @@ fn version_header(gl: &Gl) -> &'static str {
 pub(crate) trait Uniform {
     /// # Safety
     /// The program of `place` is in use in the current context.
-    unsafe fn send(self, gl: &Gl, place: &glow::UniformLocation);
+    unsafe fn send(self, gl: &Gl, place: glow::UniformLocation);
 }
 
 macro_rules! uniform {
     ($type:ty, $value:ident, $gl:ident, $place:ident => $call:expr) => {
         impl Uniform for $type {
-            unsafe fn send(self, $gl: &Gl, $place: &glow::UniformLocation) {
+            unsafe fn send(self, $gl: &Gl, $place: glow::UniformLocation) {
                 let $value = self;
                 unsafe { $call };
             }
         }
     };
 }
-uniform!(i32, v, gl, place => gl.uniform_1_i32(Some(place), v));
-uniform!(f32, v, gl, place => gl.uniform_1_f32(Some(place), v));
-uniform!([f32; 2], v, gl, place => gl.uniform_2_f32_slice(Some(place), &v));
-uniform!([f32; 3], v, gl, place => gl.uniform_3_f32_slice(Some(place), &v));
-uniform!([f32; 4], v, gl, place => gl.uniform_4_f32_slice(Some(place), &v));
-uniform!(&[[f32; 3]], v, gl, place => gl.uniform_3_f32_slice(Some(place), v.as_flattened()));
-uniform!([[f32; 3]; 3], v, gl, place => gl.uniform_matrix_3_f32_slice(Some(place), false, v.as_flattened()));
-uniform!([[f32; 4]; 4], v, gl, place => gl.uniform_matrix_4_f32_slice(Some(place), false, v.as_flattened()));
+uniform!(i32, v, gl, place => gl.uniform_1_i32(Some(&place), v));
+uniform!(f32, v, gl, place => gl.uniform_1_f32(Some(&place), v));
+uniform!([f32; 2], v, gl, place => gl.uniform_2_f32_slice(Some(&place), &v));
+uniform!([f32; 3], v, gl, place => gl.uniform_3_f32_slice(Some(&place), &v));
+uniform!([f32; 4], v, gl, place => gl.uniform_4_f32_slice(Some(&place), &v));
+uniform!(&[[f32; 3]], v, gl, place => gl.uniform_3_f32_slice(Some(&place), v.as_flattened()));
+uniform!([[f32; 3]; 3], v, gl, place => gl.uniform_matrix_3_f32_slice(Some(&place), false, v.as_flattened()));
+uniform!([[f32; 4]; 4], v, gl, place => gl.uniform_matrix_4_f32_slice(Some(&place), false, v.as_flattened()));

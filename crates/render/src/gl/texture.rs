@@ -33,7 +33,7 @@ impl Format {
 /// A rectangular table, read texel by texel, without interpolation.
 pub(crate) struct Texture {
     gl: Gl,
-    texture: glow::Texture,
+    handle: glow::Texture,
     format: Format,
     size: [usize; 2],
 }
@@ -66,7 +66,7 @@ impl Texture {
                 component,
                 glow::PixelUnpackData::Slice(Some(&zeros)),
             );
-            Ok(Self { gl: gl.clone(), texture, format, size })
+            Ok(Self { gl: gl.clone(), handle: texture, format, size })
         }
     }
 
@@ -82,7 +82,7 @@ impl Texture {
         debug_assert!(at[0] + size[0] <= self.size[0] && at[1] + size[1] <= self.size[1]);
         let (_, layout, component) = self.format.names();
         unsafe {
-            self.gl.bind_texture(glow::TEXTURE_2D, Some(self.texture));
+            self.gl.bind_texture(glow::TEXTURE_2D, Some(self.handle));
             self.gl.pixel_store_i32(glow::UNPACK_ALIGNMENT, 1);
             self.gl.tex_sub_image_2d(
                 glow::TEXTURE_2D,
@@ -102,13 +102,13 @@ impl Texture {
     pub(crate) fn bind(&self) {
         unsafe {
             self.gl.active_texture(glow::TEXTURE0);
-            self.gl.bind_texture(glow::TEXTURE_2D, Some(self.texture));
+            self.gl.bind_texture(glow::TEXTURE_2D, Some(self.handle));
         }
     }
 }
 
 impl Drop for Texture {
     fn drop(&mut self) {
-        unsafe { self.gl.delete_texture(self.texture) };
+        unsafe { self.gl.delete_texture(self.handle) };
     }
 }

@@ -23,7 +23,7 @@ out vec4 colour;
 vec3 outline_of(vec3 body) {
     vec3 luma = vec3(0.299, 0.587, 0.114);
     float contrast = abs(dot(luma, body - u_ground));
-    return mix(mix(body, u_ink, 0.45), 0.55 * body, smoothstep(0.10, 0.30, contrast));
+    return mix(mix(body, u_ink, 0.28), 0.55 * body, smoothstep(0.10, 0.30, contrast));
 }
 
 void main() {
