@@ -72,6 +72,7 @@ impl<const D: usize> EventDriven<D> {
     ///
     /// # Errors
     /// When box, particles or rules make no sense, particles overlap, or one has no mass: names what is wrong.
+    #[allow(clippy::needless_pass_by_value, reason = "the engine takes the particles over")]
     pub fn new(boundary: Boundary<D>, particles: Particles<D>, rules: Rules<D>) -> Result<Self, Invalid> {
         boundary.validate_particles(&particles)?;
         rules.validate()?;

@@ -196,7 +196,7 @@ impl<const D: usize> Grid<D> {
 
     #[inline]
     fn index(&self, cell: [u16; D]) -> usize {
-        (0..D).map(|k| u32::from(cell[k]) * self.stride[k]).sum::<u32>() as usize
+        cell.iter().zip(&self.stride).map(|(&c, stride)| u32::from(c) * stride).sum::<u32>() as usize
     }
 
     #[inline]
@@ -292,8 +292,8 @@ impl<const D: usize> Grid<D> {
     pub(crate) fn neighbourhood(&self, i: u32) -> Neighbourhood<D> {
         let cell = self.places[i as usize].cell;
         let mut around = Neighbourhood { part: [[0; 3]; D], image: [[0; 3]; D], shift: [[0.0; 3]; D], inside: true };
-        for k in 0..D {
-            let (c, last, stride) = (u32::from(cell[k]), self.cells[k] - 1, self.stride[k]);
+        for (k, &place) in cell.iter().enumerate() {
+            let (c, last, stride) = (u32::from(place), self.cells[k] - 1, self.stride[k]);
             let here = c * stride;
             around.part[k] = [here.wrapping_sub(stride), here, here + stride];
             let side = self.upper[k] - self.lower[k];

@@ -1,5 +1,7 @@
 //! What must hold for every system: random ones, in both dimensions and all kinds of boxes.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
 mod common;
 
 use std::ops::ControlFlow;

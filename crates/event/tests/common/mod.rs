@@ -1,6 +1,7 @@
 //! Systems the tests start from, and observers they watch with.
 
 #![allow(dead_code, reason = "each test binary uses its own part")]
+#![allow(clippy::unwrap_used, reason = "a test that cannot start has failed")]
 
 use std::ops::ControlFlow;
 
@@ -101,7 +102,9 @@ pub(crate) fn random_system<const D: usize>(seed: u64) -> (Boundary<D>, Particle
     }
     if random.below(3) == 0 {
         // Along walled axes, where it cannot heat the system for ever.
-        walled.iter().for_each(|&k| rules.field[k] = random.normal());
+        for &k in &walled {
+            rules.field[k] = random.normal();
+        }
     }
     let mut particles = Particles::new();
     let wanted = 4 + random.below(21) as usize;
