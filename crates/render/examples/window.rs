@@ -20,7 +20,7 @@ impl WindowApp for Fountain {
             scene.field = [0.0, -9.81, 0.0];
             scene.colouring = Colouring::Speed { most: 10.0, unit: "m/s".into() };
             scene.add_box([-12.0, 0.0, 0.0], [12.0, 11.0, 0.0], 1.5, Colour::Wall);
-            scene.bodies = (0..400).map(|i| thrown(i, 0.0)).collect();
+            scene.bodies = (0..400).map(|i| thrown(i, -2.2 * (i as f64 * 0.7548).fract())).collect();
         }
         if !self.paused {
             scene.time += self.speed * elapsed_wall;
@@ -29,7 +29,7 @@ impl WindowApp for Fountain {
         for (i, body) in scene.bodies.iter_mut().enumerate() {
             let flight = 2.0 * body.velocity[1] / 9.81;
             if time > body.time + flight {
-                *body = thrown(i, time);
+                *body = thrown(i, body.time + flight);
             }
         }
         scene.caption = format!("{} times real time{}", self.speed, if self.paused { ", paused" } else { "" });
@@ -50,12 +50,7 @@ fn thrown(index: usize, time: f64) -> Body {
     let part = index as f64 / 400.0;
     let angle = 1.1 + 0.94 * part;
     let speed = 9.0 + 2.0 * (index as f64 * 0.618).fract();
-    Body {
-        velocity: [speed * angle.cos(), speed * angle.sin(), 0.0],
-        time: time + 2.0 * (index as f64 * 0.7548).fract(),
-        radius: 0.12,
-        ..Body::default()
-    }
+    Body { velocity: [speed * angle.cos(), speed * angle.sin(), 0.0], time, radius: 0.12, ..Body::default() }
 }
 
 fn main() -> Result<(), RenderError> {

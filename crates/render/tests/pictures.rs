@@ -54,24 +54,22 @@ fn a_line_covers_what_geometry_says() {
 #[test]
 fn a_disc_covers_its_area_around_its_place() {
     for (x, y, radius) in [(0.0, 0.0, 20.0), (31.25, -17.6, 9.3), (-80.1, 60.7, 33.3)] {
-        // The ink of a small body has no outline to darken it: the outline is measured by its hue instead, so the sum
-        // runs over pixels that differ from the ground at all, between the circles of radius r - 1 and r + 1.
+        // The outline is darker than the body, so what counts is whether a pixel differs from the ground at all.
         let picture = draw(&white(vec![disc(x, y, radius)]), &bare(Palette::Dark));
         let ground = picture.pixel(0, 0).unwrap();
         let middle = f64::from(SIDE) / 2.0;
         let (mut count, mut sum) = (0.0, [0.0; 2]);
         for row in 0..SIDE {
             for column in 0..SIDE {
-                if picture.pixel(column, row).unwrap() != ground {
-                    let place = [f64::from(column) + 0.5 - middle, middle - f64::from(row) - 0.5];
-                    let distance = (place[0] - x).hypot(place[1] - y);
+                let place = [f64::from(column) + 0.5 - middle, middle - f64::from(row) - 0.5];
+                let distance = (place[0] - x).hypot(place[1] - y);
+                if picture.pixel(column, row).unwrap() == ground {
+                    // A covered fraction below half a step of 1/255 of the faintest outline is invisible.
+                    assert!(distance > radius + 0.5 - 0.02, "a hole in the disc");
+                } else {
                     assert!(distance < radius + 0.5 + 1e-3, "painted {distance} from the centre");
                     count += 1.0;
                     sum = [sum[0] + place[0], sum[1] + place[1]];
-                } else {
-                    let place = [f64::from(column) + 0.5 - middle, middle - f64::from(row) - 0.5];
-                    // A covered fraction below half a step of 1/255 of the faintest outline is invisible.
-                    assert!((place[0] - x).hypot(place[1] - y) > radius + 0.5 - 0.02, "a hole in the disc");
                 }
             }
         }
