@@ -62,7 +62,8 @@ pub fn running_integral(correlations: &Curves, dimension: usize) -> Curves {
 /// that is at most `until`.
 ///
 /// Take `until` from theory, not from the data, as some multiple of `1/gamma`: an exponential is then cut off by
-/// `exp(-gamma until)`, and no wish decides where the plateau is. Simpson's rule adds `(gamma h)^4 / 180`.
+/// `exp(-gamma until)`, and no wish decides where the plateau is. Simpson's rule adds `(gamma h)^4 / 180`. Integrals over short paths are skewed,
+/// which few replicas do not average out: paths should last 50 times `until`, lest scores be low by a tenth.
 pub fn green_kubo(correlations: &Curves, dimension: usize, until: f64) -> Estimate {
     let integral = running_integral(correlations, dimension);
     let Some(last) = integral.x.iter().rposition(|&x| x <= until * (1.0 + 1e-12)) else {
