@@ -128,6 +128,20 @@ proptest! {
     fn reversed_spheres_return(seed in any::<u64>()) { returns_when_reversed::<3>(seed); }
 }
 
+/// Time is counted from a new epoch every 65536 contacts here: that depends on no stop either.
+#[test]
+fn stops_leave_no_trace_across_epochs() {
+    let mut once = common::periodic_fluid::<2>(64, 0.5, 9);
+    let mut often = once.clone();
+    once.advance(600.0, &mut ()).unwrap();
+    for step in 1..=6000 {
+        often.advance(0.1 * f64::from(step), &mut ()).unwrap();
+    }
+    assert!(once.counts().collisions > 100_000, "{:?}", once.counts());
+    assert_eq!(once.counts(), often.counts());
+    assert!(same_bits(&once.snapshot(), &often.snapshot()));
+}
+
 #[test]
 fn a_lone_particle_counts_its_turns_round_the_box() {
     let mut one = Particles::<2>::new();
