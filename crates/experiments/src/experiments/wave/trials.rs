@@ -1,0 +1,407 @@
+//! Measurements on chains of their own, beside the one on show: modes, echoes, a density step, a travelling wave, and the
+//! limit of stability. Each records a few numbers a step and is evaluated once, when it is done.
+
+use std::f64::consts::TAU;
+
+use corpuscle_core::{Failure, Invalid, Random};
+use corpuscle_time::{Integrator, Signal};
+
+use super::chain::{Chain, Design, End, Ends, Polarisation};
+use super::{sine, theory};
+use theory::Modes;
+
+/// What all trials share: the material of the chain on show and its step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Material {
+    pub(super) stiffness: f64,
+    pub(super) mass: f64,
+    pub(super) spacing: f64,
+    pub(super) polarisation: Polarisation,
+    pub(super) time_step: f64,
+    pub(super) seed: u64,
+}
+
+impl Material {
+    /// `omega_0 = sqrt(kappa / m)`; its inverse is the time a long wave takes from mass to mass.
+    pub(super) fn omega_0(&self) -> f64 {
+        (self.stiffness / self.mass).sqrt()
+    }
+
+    /// Speed of long waves `c = a sqrt(kappa / m)`.
+    pub(super) fn speed(&self) -> f64 {
+        self.spacing * self.omega_0()
+    }
+
+    /// Small enough for the order of longitudinal masses; the equations are linear, so that the value does not matter.
+    fn amplitude(&self) -> f64 {
+        0.1 * self.spacing
+    }
+
+    /// Step of a trial whose lightest mass is `lightest` times the usual one: `omega dt` stays the user's, but a very fine
+    /// step is not needed where its error is known exactly.
+    fn step(&self, lightest: f64) -> f64 {
+        self.time_step.max(0.02 / self.omega_0()) * lightest.min(1.0).sqrt()
+    }
+
+    /// Step of the trials on uniform chains.
+    pub(super) fn trial_step(&self) -> f64 {
+        self.step(1.0)
+    }
+
+    fn design(&self, masses: Vec<f64>, ends: Ends, dt: f64) -> Design {
+        let integrator = Integrator::VelocityVerlet { dt };
+        Design { masses, stiffness: self.stiffness, spacing: self.spacing, polarisation: self.polarisation, ends, integrator }
+    }
+
+    /// Largest coordinate that gets rounded, over the amplitude.
+    fn rounded(&self, design: &Design, amplitude: f64) -> f64 {
+        match self.polarisation {
+            Polarisation::Transverse => 2.0,
+            Polarisation::Longitudinal => 2.0 + design.length() / amplitude,
+        }
+    }
+}
+
+/// One mode's frequency.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tone {
+    pub(super) number: usize,
+    /// `k a`.
+    pub(super) phase: f64,
+    /// Fitted to the motion.
+    pub(super) measured: f64,
+    /// Of the chain in continuous time.
+    pub(super) chain: f64,
+    /// Of the chain advanced by velocity Verlet.
+    pub(super) verlet: f64,
+}
+
+/// What a trial found.
+#[derive(Clone, Debug)]
+pub(super) enum Finding {
+    /// Frequencies of all modes, and the bound of their relative error.
+    Modes { tones: Vec<Tone>, bound: f64 },
+    /// A pulse sent to an end: amplitude of its echo, and speed there and back, with the bounds of their errors (the
+    /// speed's relative to itself).
+    Echo { amplitude: f64, bound: f64, speed: f64, speed_bound: f64 },
+    /// A pulse sent through a density step, over the incident amplitude, with the bounds of both errors.
+    Step { ratio: f64, reflected: f64, transmitted: f64, bounds: (f64, f64) },
+    /// Frequency and wavenumber of a running wave.
+    Travel { frequency: f64, wavelength: f64 },
+    /// Growth of the fastest mode: largest amplitude seen and growth rate a step.
+    Growth { number: f64, largest: f64, rate: f64, steps: u64 },
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Purpose {
+    Modes,
+    Echo { end: End },
+    Step { ratio: f64 },
+    Travel,
+    Growth { number: f64 },
+}
+
+#[derive(Clone, Debug)]
+enum Probe {
+    Place(usize),
+    Shape(Vec<f64>),
+}
+
+/// A chain with probes.
+pub(super) struct Trial {
+    purpose: Purpose,
+    material: Material,
+    chain: Chain,
+    dt: f64,
+    steps: u64,
+    probes: Vec<Probe>,
+    series: Vec<Vec<f64>>,
+    /// Standard deviation in time of the pulse sent, where one is.
+    sigma: f64,
+    finding: Option<Finding>,
+}
+
+/// Masses of the chains whose modes are measured; odd, so that a ring has no mode that a cosine misses.
+const MODE_MASSES: usize = 49;
+/// Standard deviation of a test pulse, in the time from mass to mass.
+const SIGMA: f64 = 12.0;
+/// Distances in these deviations: from shaker to first sensor and from there to the end or step; a wave is then clear of
+/// every other by 9 deviations, where a Gaussian is `exp(-40)`.
+const CLEAR: f64 = 9.0;
+/// From a density step to the sensor behind it.
+const BEHIND: f64 = 2.0;
+/// The running wave: masses and waves around the ring.
+const RING: (usize, usize) = (80, 2);
+
+impl Trial {
+    /// All modes of a uniform chain at once, at equal amplitudes and random phases.
+    ///
+    /// # Errors
+    /// As [`Chain::new`].
+    pub(super) fn modes(material: Material, ends: Ends, stream: u64) -> Result<Self, Invalid> {
+        let dt = material.step(1.0);
+        let design = material.design(vec![material.mass; MODE_MASSES], ends, dt);
+        let mut random = Random::new(material.seed, stream);
+        let (mut displacement, mut velocity) = (vec![0.0; MODE_MASSES], vec![0.0; MODE_MASSES]);
+        let mut probes = vec![];
+        let modes = Modes::of(&design);
+        let amplitude = material.amplitude() / MODE_MASSES as f64;
+        for j in 1..=modes.map_or(0, |modes| modes.highest()) {
+            let Some(modes) = modes else { break };
+            let (sine, cosine) = libm::sincos(TAU * random.uniform());
+            let omega = theory::dispersion(material.omega_0(), modes.phase(j));
+            let shape = modes.shape(j);
+            for (n, s) in shape.iter().enumerate() {
+                displacement[n] += amplitude * cosine * s;
+                velocity[n] += amplitude * omega * sine * s;
+            }
+            probes.push(Probe::Shape(shape));
+        }
+        let chain = Chain::new(design, &displacement, &velocity)?;
+        // Three periods of the slowest mode, at most 2 (N + 1) / omega_0 long.
+        let steps = 6.0 * (MODE_MASSES + 1) as f64 / (material.omega_0() * dt);
+        Ok(Self::new(Purpose::Modes, material, chain, dt, steps, probes, 0.0))
+    }
+
+    /// A pulse from a shaker to an end and back.
+    ///
+    /// # Errors
+    /// As [`Chain::new`].
+    pub(super) fn echo(material: Material, end: End) -> Result<Self, Invalid> {
+        let dt = material.step(1.0);
+        let sensor = (CLEAR * SIGMA) as usize;
+        let shaker = Self::shaker(material, SIGMA);
+        let design = material.design(vec![material.mass; 2 * sensor], Ends::Between(shaker, end), dt);
+        let chain = Chain::new(design, &[], &[])?;
+        let sigma = SIGMA / material.omega_0();
+        let steps = 5.0 * CLEAR * sigma / dt;
+        Ok(Self::new(Purpose::Echo { end }, material, chain, dt, steps, vec![Probe::Place(sensor - 1)], sigma))
+    }
+
+    /// A pulse from a shaker through a place where the density changes by `ratio`.
+    ///
+    /// # Errors
+    /// As [`Chain::new`].
+    pub(super) fn step(material: Material, ratio: f64) -> Result<Self, Invalid> {
+        let dt = material.step(ratio);
+        // A pulse is shortened in a denser part: it starts longer, to be a long wave everywhere.
+        let wide = SIGMA * ratio.max(1.0).sqrt();
+        let sensor = (CLEAR * wide) as usize;
+        let behind = (BEHIND * wide / ratio.sqrt()) as usize;
+        let beyond = ((BEHIND + CLEAR) * wide / ratio.sqrt()) as usize;
+        let mut masses = vec![material.mass; 2 * sensor];
+        masses.resize(2 * sensor + beyond, material.mass * ratio);
+        let design = material.design(masses, Ends::Between(Self::shaker(material, wide), End::Fixed), dt);
+        let chain = Chain::new(design, &[], &[])?;
+        let sigma = wide / material.omega_0();
+        let steps = 5.0 * CLEAR * sigma / dt;
+        let probes = vec![Probe::Place(sensor - 1), Probe::Place(2 * sensor + behind)];
+        Ok(Self::new(Purpose::Step { ratio }, material, chain, dt, steps, probes, sigma))
+    }
+
+    /// A sinusoidal wave that runs around a ring.
+    ///
+    /// # Errors
+    /// As [`Chain::new`].
+    pub(super) fn travel(material: Material) -> Result<Self, Invalid> {
+        let (dt, (count, waves)) = (material.step(1.0), RING);
+        let design = material.design(vec![material.mass; count], Ends::Ring, dt);
+        let phase = TAU * waves as f64 / count as f64;
+        let omega = theory::verlet_frequency(theory::dispersion(material.omega_0(), phase), dt);
+        // The velocity of velocity Verlet is the central difference of its positions.
+        let rate = material.amplitude() * libm::sin(omega * dt) / dt;
+        let at = |n: usize| libm::sincos(phase * (n as f64 + 0.5));
+        let displacement: Vec<f64> = (0..count).map(|n| material.amplitude() * at(n).1).collect();
+        let velocity: Vec<f64> = (0..count).map(|n| rate * at(n).0).collect();
+        let chain = Chain::new(design, &displacement, &velocity)?;
+        let steps = 3.0 * TAU / (omega * dt);
+        Ok(Self::new(Purpose::Travel, material, chain, dt, steps, vec![Probe::Place(0)], 0.0))
+    }
+
+    /// The fastest motion of a ring, neighbours against each other, at the stability number `omega dt`. It is transverse
+    /// whatever the chain on show is: longitudinal masses that run away would pass through each other.
+    ///
+    /// # Errors
+    /// As [`Chain::new`].
+    pub(super) fn growth(mut material: Material, number: f64, steps: u64) -> Result<Self, Invalid> {
+        material.polarisation = Polarisation::Transverse;
+        let dt = number / (2.0 * material.omega_0());
+        let design = material.design(vec![material.mass; 16], Ends::Ring, dt);
+        let shape: Vec<f64> = (0..16).map(|n| if n % 2 == 0 { 1.0 } else { -1.0 }).collect();
+        let chain = Chain::new(design, &shape, &[])?;
+        Ok(Self::new(Purpose::Growth { number }, material, chain, dt, steps as f64, vec![Probe::Shape(shape)], 0.0))
+    }
+
+    fn new(purpose: Purpose, material: Material, chain: Chain, dt: f64, steps: f64, probes: Vec<Probe>, sigma: f64) -> Self {
+        let series = vec![vec![]; probes.len()];
+        let mut trial = Self { purpose, material, chain, dt, steps: steps.ceil() as u64, probes, series, sigma, finding: None };
+        trial.record();
+        trial
+    }
+
+    /// A shaker that sends a Gaussian pulse of `wide` times from mass to mass, at rest at the start but for `exp(-40)`.
+    fn shaker(material: Material, wide: f64) -> End {
+        let width = wide / material.omega_0();
+        End::Driven(Signal::Pulse { amplitude: material.amplitude(), centre: CLEAR * width, width })
+    }
+
+    /// What was found, when the trial is done.
+    pub(super) fn finding(&self) -> Option<&Finding> {
+        self.finding.as_ref()
+    }
+
+    /// Steps taken.
+    pub(super) fn work(&self) -> u64 {
+        self.chain.steps()
+    }
+
+    /// Advances to this share of the whole trial.
+    ///
+    /// # Errors
+    /// As [`Chain::advance`].
+    pub(super) fn advance(&mut self, share: f64) -> Result<(), Failure> {
+        let target = (self.steps as f64 * share.clamp(0.0, 1.0)) as u64;
+        while self.chain.steps() < target {
+            self.chain.advance((self.chain.steps() + 1) as f64 * self.dt)?;
+            self.record();
+        }
+        if self.finding.is_none() && self.chain.steps() >= self.steps {
+            self.finding = self.evaluate();
+        }
+        Ok(())
+    }
+
+    fn record(&mut self) {
+        let all =
+            if self.probes.iter().any(|probe| matches!(probe, Probe::Shape(_))) { self.chain.displacements() } else { vec![] };
+        for (probe, series) in self.probes.iter().zip(&mut self.series) {
+            series.push(match probe {
+                Probe::Place(n) => self.chain.displacement(*n),
+                Probe::Shape(shape) => theory::project(&all, shape),
+            });
+        }
+    }
+
+    /// Worst case of rounding over the amplitude of a trial with this number of soft modes.
+    fn rounding(&self, amplitude: f64) -> f64 {
+        let design = self.chain.design();
+        let (rounded, count) = (self.material.rounded(design, amplitude), design.count());
+        theory::rounding(self.steps, rounded, count, count as f64)
+    }
+
+    fn evaluate(&self) -> Option<Finding> {
+        match self.purpose {
+            Purpose::Modes => self.tones(),
+            Purpose::Echo { end } => self.evaluate_echo(end),
+            Purpose::Step { ratio } => Some(self.evaluate_step(ratio)),
+            Purpose::Travel => {
+                let frequency = sine::angular_frequency(&self.series[0], self.dt)? / TAU;
+                let wavenumber = sine::angular_frequency(&self.chain.displacements(), self.material.spacing)?;
+                Some(Finding::Travel { frequency, wavelength: TAU / wavenumber })
+            }
+            Purpose::Growth { number } => {
+                let series = &self.series[0];
+                let largest = series.iter().fold(0.0, |most: f64, q| most.max(q.abs()));
+                // From rest, Q_n / Q_0 = cosh(rate n) beyond the limit.
+                let last = (series[series.len() - 1] / series[0]).abs();
+                let rate = libm::acosh(last.max(1.0)) / self.steps as f64;
+                Some(Finding::Growth { number, largest: largest / series[0].abs(), rate, steps: self.steps })
+            }
+        }
+    }
+
+    fn tones(&self) -> Option<Finding> {
+        let modes = Modes::of(self.chain.design())?;
+        let omega_0 = self.material.omega_0();
+        let tone = |(index, series): (usize, &Vec<f64>)| {
+            let phase = modes.phase(index + 1);
+            let chain = theory::dispersion(omega_0, phase);
+            let verlet = theory::verlet_frequency(chain, self.dt);
+            Some(Tone { number: index + 1, phase, measured: sine::angular_frequency(series, self.dt)?, chain, verlet })
+        };
+        let tones: Vec<Tone> = self.series.iter().enumerate().map(tone).collect::<Option<_>>()?;
+        // An error of at most e in a sine of amplitude A shifts the frequency fitted over T by at most 6 e / (A T).
+        let amplitude = self.material.amplitude() / MODE_MASSES as f64;
+        let radians = tones[0].verlet * self.steps as f64 * self.dt;
+        Some(Finding::Modes { bound: 6.0 * self.rounding(amplitude) / radians, tones })
+    }
+
+    /// Amplitude of the pulse, over the one sent, in a window of `CLEAR` deviations about the time it is due `after` it was
+    /// sent, and the centre of what is there.
+    fn receive(&self, sensor: usize, after: f64) -> (f64, f64) {
+        let due = CLEAR * self.sigma + after;
+        let (mut overlap, mut square, mut sum, mut moment) = (0.0, 0.0, 0.0, 0.0);
+        for (i, &y) in self.series[sensor].iter().enumerate() {
+            let t = i as f64 * self.dt - due;
+            if t.abs() <= CLEAR * self.sigma {
+                let u = t / self.sigma;
+                let g = libm::exp(-0.5 * u * u);
+                overlap += y * g;
+                square += g * g;
+                sum += y;
+                moment += y * t;
+            }
+        }
+        (overlap / (square * self.material.amplitude()), after + moment / sum)
+    }
+
+    /// Bound of the error of a received amplitude: dispersion and the lattice act on each frequency of the pulse by a known
+    /// factor `f(omega)` and phase, and the projection averages `f cos(phase)` over the pulse's spectrum.
+    fn spread(&self, expected: f64, response: impl Fn(f64) -> (f64, f64)) -> f64 {
+        const PARTS: i32 = 1000;
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for part in 0..=PARTS {
+            let u = 7.0 * f64::from(part) / f64::from(PARTS);
+            let weight = libm::exp(-u * u) * if part == 0 { 0.5 } else { 1.0 };
+            let (factor, phase) = response(u / self.sigma);
+            weights += weight;
+            sum += weight * (factor * libm::cos(phase) - expected).abs();
+        }
+        sum / weights + self.rounding(self.material.amplitude())
+    }
+
+    fn evaluate_echo(&self, end: End) -> Option<Finding> {
+        let Probe::Place(sensor) = self.probes[0] else { return None };
+        let (design, omega_0, c) = (self.chain.design(), self.material.omega_0(), self.material.speed());
+        let (out, back) = (design.place(sensor), 2.0 * (design.length() - design.place(sensor)));
+        let (_, first) = self.receive(0, out / c);
+        let (amplitude, second) = self.receive(0, (out + back) / c);
+        let sign = if end == End::Free { 1.0 } else { -1.0 };
+        let bound = self.spread(sign, |omega| {
+            let lag = theory::verlet_phase(omega, omega_0, self.dt) / self.material.spacing - omega / c;
+            (sign, lag * (out + back))
+        });
+        // Centres of two windows of half-width W deviations: 2 W^2 / sqrt(2 pi) deviations times the error of a value.
+        let rounding = self.rounding(self.material.amplitude());
+        let speed_bound = 2.0 * CLEAR * CLEAR / TAU.sqrt() * self.sigma * rounding / (second - first);
+        Some(Finding::Echo { amplitude, bound, speed: back / (second - first), speed_bound })
+    }
+
+    fn evaluate_step(&self, ratio: f64) -> Finding {
+        let (design, omega_0, a) = (self.chain.design(), self.material.omega_0(), self.material.spacing);
+        let place = |probe: &Probe| if let Probe::Place(n) = probe { design.place(*n) } else { f64::NAN };
+        let (sensor, behind) = (place(&self.probes[0]), place(&self.probes[1]));
+        let light = design.masses.iter().position(|&m| m != design.masses[0]).unwrap_or(design.count());
+        let step = design.place(0) + (light as f64 - 0.5) * a;
+        let (c_1, c_2) = (self.material.speed(), self.material.speed() / ratio.sqrt());
+        let phases = |omega: f64| {
+            let of = |omega_0| theory::verlet_phase(omega, omega_0, self.dt);
+            (of(omega_0), of(omega_0 / ratio.sqrt()))
+        };
+        let (r, t) = theory::step_amplitudes(ratio);
+        let back = 2.0 * step - sensor;
+        let (reflected, _) = self.receive(0, back / c_1);
+        let bound_r = self.spread(r, |omega| {
+            let (one, two) = phases(omega);
+            (theory::lattice_step_amplitudes(one, two).0, (one / a - omega / c_1) * back)
+        });
+        let on = behind - step;
+        let (transmitted, _) = self.receive(1, step / c_1 + on / c_2);
+        let bound_t = self.spread(t, |omega| {
+            let (one, two) = phases(omega);
+            let lag = (one / a - omega / c_1) * step + (two / a - omega / c_2) * on;
+            (theory::lattice_step_amplitudes(one, two).1, lag)
+        });
+        Finding::Step { ratio, reflected, transmitted, bounds: (bound_r, bound_t) }
+    }
+}
