@@ -1,5 +1,7 @@
 //! The ideal gas: its checks over many seeds, and that callers and threads leave no trace.
 
+#![allow(clippy::unwrap_used)] // helpers of tests are tests too
+
 use std::collections::BTreeMap;
 
 use corpuscle_experiments::{Settings, Simulation, find};

@@ -287,16 +287,15 @@ impl<const D: usize> Simulation for Laboratory<D> {
         scene.clear();
         scene.title = EXPERIMENT.title.into();
         let state = self.base.state;
-        scene.caption = format!("N = {}, kT = {}, V_acc = {:.0}", state.count, state.temperature, state.volume::<D>());
-        if self.is_telling() {
+        let reading = if self.is_telling() {
             let z = self.base.wall_pressure() / state.ideal_pressure::<D>();
-            scene.caption += &format!(
-                ": P V_acc/(N kT) = {:.4} ± {:.4} from the walls, {:.4} expected",
-                z.mean, z.standard_error, self.base.expected
-            );
+            let (mean, error, expected) = (z.mean, z.standard_error, self.base.expected);
+            format!("P V_acc/(N kT) = {mean:.4} ± {error:.4} from the walls, {expected:.4} expected")
         } else {
-            scene.caption += ", warming up";
-        }
+            "warming up".into()
+        };
+        let (count, temperature, volume) = (state.count, state.temperature, state.volume::<D>());
+        scene.caption = format!("N = {count}, kT = {temperature}, V_acc = {volume:.0}: {reading}");
         scene.colouring = Colouring::Speed { most: 3.0 * state.thermal_speed(), unit: String::new() };
         add_event_driven(scene, &self.base.replicas[0].engine, |_| 0.0);
     }
