@@ -1,5 +1,6 @@
 //! The experiments themselves, one file each.
 
+pub(crate) mod brownian;
 pub(crate) mod entropy;
 pub(crate) mod ideal_gas;
 pub(crate) mod three_body;

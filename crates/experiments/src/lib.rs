@@ -35,8 +35,13 @@ pub struct Experiment {
 }
 
 /// All experiments, in the order in which they are listed.
-pub static REGISTRY: &[&Experiment] =
-    &[&experiments::entropy::EXPERIMENT, &experiments::ideal_gas::EXPERIMENT, &experiments::three_body::EXPERIMENT, &experiments::wave::EXPERIMENT];
+pub static REGISTRY: &[&Experiment] = &[
+    &experiments::brownian::EXPERIMENT,
+    &experiments::entropy::EXPERIMENT,
+    &experiments::ideal_gas::EXPERIMENT,
+    &experiments::three_body::EXPERIMENT,
+    &experiments::wave::EXPERIMENT,
+];
 
 /// The experiment of this name.
 ///

@@ -29,6 +29,9 @@ pub struct Trail {
 }
 
 impl Trail {
+    /// A time so long ago that whatever bears it has faded; finite, also in single precision.
+    pub const LONG_AGO: f64 = -1e30;
+
     /// An empty trail that keeps the newest `capacity` points (at least 2).
     pub fn new(key: u32, capacity: usize, colour: Colour) -> Self {
         Self { key, colour, width: 1.5, capacity: capacity.max(2), total: 0, points: VecDeque::new() }
@@ -41,6 +44,23 @@ impl Trail {
         }
         self.points.push_back(point);
         self.total += 1;
+    }
+
+    /// Adds the newest point without a line to it from the one before: a path that leaves a periodic box through one face
+    /// and comes back through the other.
+    ///
+    /// Both ends of the gap are points of [`LONG_AGO`](Self::LONG_AGO), which has faded.
+    pub fn jump(&mut self, point: TrailPoint) {
+        if let Some(last) = self.points.back().map(|last| last.position) {
+            self.push(TrailPoint { position: last, time: Self::LONG_AGO });
+            self.push(TrailPoint { position: point.position, time: Self::LONG_AGO });
+        }
+        self.push(point);
+    }
+
+    /// Time of the oldest point kept, the ends of gaps left aside.
+    pub fn oldest_time(&self) -> Option<f64> {
+        self.points.iter().map(|point| point.time).find(|&time| time > Self::LONG_AGO)
     }
 
     /// Number of points ever added.
@@ -79,5 +99,16 @@ mod tests {
         assert_eq!(times(4), [4.0]);
         assert_eq!(times(0), [2.0, 3.0, 4.0]);
         assert!(times(5).is_empty());
+    }
+
+    #[test]
+    fn a_jump_leaves_a_gap_between_faded_points() {
+        let mut trail = Trail::new(0, 10, Colour::Ink);
+        let point = |x: f64, time| TrailPoint { position: [x, 0.0, 0.0], time };
+        trail.push(point(9.0, 1.0));
+        trail.jump(point(0.5, 2.0));
+        let seen: Vec<(f64, bool)> = trail.points().iter().map(|p| (p.position[0], p.time == Trail::LONG_AGO)).collect();
+        assert_eq!(seen, [(9.0, false), (9.0, true), (0.5, true), (0.5, false)]);
+        assert_eq!(trail.oldest_time(), Some(1.0));
     }
 }

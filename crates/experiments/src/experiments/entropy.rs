@@ -22,7 +22,7 @@ use crate::{Action, Experiment, Honesty, Kind, Parameter, Settings, Simulation, 
 use room::{Process, Room, Sample};
 
 /// The registry's entry.
-pub static EXPERIMENT: Experiment = Experiment {
+pub(crate) static EXPERIMENT: Experiment = Experiment {
     name: "entropy",
     title: "The growth of entropy",
     summary: "A partition opens: a gas expands, two gases mix, and the coarse-grained entropy rises to what theory says. \
@@ -281,7 +281,7 @@ impl<const D: usize> Entropy<D> {
     }
 
     /// First sample that counts as equilibrium.
-    fn settled(&self) -> usize {
+    const fn settled() -> usize {
         SAMPLES / 2
     }
 
@@ -289,7 +289,7 @@ impl<const D: usize> Entropy<D> {
     fn settled_means(&self, process: Process, quantity: impl Fn(&Sample) -> f64) -> Vec<f64> {
         self.rooms(process)
             .map(|room| {
-                let samples = &room.samples[self.settled()..];
+                let samples = &room.samples[Self::settled()..];
                 samples.iter().map(&quantity).sum::<f64>() / samples.len() as f64
             })
             .collect()
@@ -358,7 +358,7 @@ impl<const D: usize> Entropy<D> {
 
     /// Distribution of the left count in equilibrium beside the normal law with the variance of theory.
     fn fluctuation_chart(&self) -> Option<Chart> {
-        if self.times.len() <= self.settled() {
+        if self.times.len() <= Self::settled() {
             return None;
         }
         let count = self.set.particles as f64;
@@ -368,7 +368,7 @@ impl<const D: usize> Entropy<D> {
         let mut bins = vec![0u32; 2 * reach as usize + 1];
         let mut total = 0u32;
         for room in self.rooms(Process::Expansion) {
-            for sample in &room.samples[self.settled()..] {
+            for sample in &room.samples[Self::settled()..] {
                 let place = ((sample.left as f64 - 0.5 * count) / bin).round() as i64 + reach;
                 if let Some(slot) = usize::try_from(place).ok().and_then(|place| bins.get_mut(place)) {
                     *slot += 1;

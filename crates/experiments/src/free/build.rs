@@ -1,6 +1,6 @@
 //! From the description of a free system to an engine, every number checked on the way.
 
-use corpuscle_core::{Axis, Boundary, Contact, Engine, Failure, Hole, Invalid, Observer, Particles, Partition, Random, Vector};
+use corpuscle_core::{Axis, Boundary, Engine, Failure, Hole, Invalid, Observer, Particles, Partition, Random, Vector};
 use corpuscle_event::{EventDriven, Rules};
 use corpuscle_time::{
     Force, Gravity, Integrator, LennardJones, PairForce, Pin, Spring, Springs, TimeDriven, UniformField, WeeksChandlerAndersen,
@@ -357,18 +357,4 @@ fn positive(key: &str, value: f64) -> Result<(), Invalid> {
 
 fn not_negative(key: &str, value: f64) -> Result<(), Invalid> {
     if value >= 0.0 && value.is_finite() { Ok(()) } else { Err(Invalid::new(key, value, "a number, zero or more")) }
-}
-
-/// Contacts of either engine, counted by what was met.
-#[derive(Debug, Default)]
-pub(super) struct ContactCounter {
-    /// All contacts.
-    pub(super) contacts: u64,
-}
-
-impl<const D: usize> Observer<D> for ContactCounter {
-    fn contact(&mut self, _: &Contact<D>) -> std::ops::ControlFlow<()> {
-        self.contacts += 1;
-        std::ops::ControlFlow::Continue(())
-    }
 }

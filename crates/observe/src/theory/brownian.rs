@@ -27,6 +27,26 @@ pub fn initial_friction<const D: usize>(
     }
 }
 
+/// Radial distribution of bath particles at contact with a single sphere of another size, to the accuracy of scaled-particle
+/// theory: `1/(1 - eta) + A q eta/(1 - eta)^2 + B q^2 eta^2/(1 - eta)^3` with `q = s_B/a`, the tracer's diameter over the
+/// contact distance, and the bath's packing fraction `eta`.
+///
+/// 2-D: `A = 9/16, B = 0` (Jenkins and Mancini 1987, doi:10.1115/1.3172990); 3-D: `A = 3/2, B = 1/2` (Boublik 1970,
+/// doi:10.1063/1.1673824; Mansoori, Carnahan, Starling and Leland 1971, doi:10.1063/1.1675048). Equal sizes give
+/// [`contact_value`](crate::theory::contact_value).
+pub fn contact_value_of_tracer<const D: usize>(packing: f64, bath_radius: f64, radius: f64) -> f64 {
+    let free = 1.0 - packing;
+    let (first, second) = match const {
+        assert!(D == 2 || D == 3, "known in two and three dimensions only");
+        D
+    } {
+        2 => (9.0 / 16.0, 0.0),
+        _ => (1.5, 0.5),
+    };
+    let crowding = 2.0 * radius / (radius + bath_radius) * packing / free;
+    (1.0 + first * crowding + second * crowding * crowding) / free
+}
+
 /// Einstein's `D = kT / (M gamma)`.
 pub fn diffusion_coefficient(temperature: f64, mass: f64, friction: f64) -> f64 {
     temperature / (mass * friction)
@@ -70,6 +90,15 @@ mod tests {
         let flat = initial_friction::<2>(n, s, 1.0, 1.0, 1.0, 1.0) / collision_rate::<2>(n, s, 1.0, 1.0);
         let round = initial_friction::<3>(n, s, 1.0, 1.0, 1.0, 1.0) / collision_rate::<3>(n, s, 1.0, 1.0);
         assert!((flat - 1.0).abs() < 1e-8 && (round - 2.0 / 3.0).abs() < 1e-8);
+    }
+
+    #[test]
+    fn a_tracer_like_the_bath_has_the_contact_value_of_the_bath() {
+        use crate::theory::contact_value;
+        for eta in [0.01, 0.2, 0.4] {
+            assert!((contact_value_of_tracer::<2>(eta, 0.5, 0.5) / contact_value::<2>(eta) - 1.0).abs() < 1e-15 * 10.0);
+            assert!((contact_value_of_tracer::<3>(eta, 0.5, 0.5) / contact_value::<3>(eta) - 1.0).abs() < 1e-15 * 10.0);
+        }
     }
 
     #[test]

@@ -5,7 +5,7 @@ mod hard_spheres;
 mod waves;
 
 pub use brownian::{
-    closed_box_displacement, diffusion_coefficient, initial_friction, ornstein_uhlenbeck_displacement,
+    closed_box_displacement, contact_value_of_tracer, diffusion_coefficient, initial_friction, ornstein_uhlenbeck_displacement,
     ornstein_uhlenbeck_velocity_correlation,
 };
 pub use hard_spheres::{

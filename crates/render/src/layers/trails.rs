@@ -107,7 +107,7 @@ impl Ring {
         if points < 2 {
             return;
         }
-        let oldest = &trail.points()[trail.points().len() - points];
+        let oldest = trail.oldest_time().unwrap_or(0.0);
         let first = (trail.total() - points as u64) % self.capacity as u64;
         self.texture.bind();
         space.enter(program);
@@ -116,7 +116,7 @@ impl Ring {
         program.set("u_capacity", self.capacity as i32);
         program.set("u_first", first as i32);
         program.set("u_points", points as i32);
-        program.set("u_oldest", pair(oldest.time));
+        program.set("u_oldest", pair(oldest));
         program.set("u_half_width", 0.5 * trail.width * space.point + 0.5);
         program.set("u_colour", space.palette.rgba(trail.colour));
         strip.draw(2 * points);

@@ -1,0 +1,504 @@
+//! Brownian motion: a heavy sphere in a bath of light ones, from the collisions up.
+//!
+//! Kinetic theory of a dilute bath of `N` particles of mass `m` and a tracer of mass `M >> m`: its velocity obeys
+//! `dV/dt = -gamma (V - V_bath) + noise`, with the Enskog friction `gamma_0` of
+//! [`theory::initial_friction`]. In a periodic box total momentum stays zero, so that the bath drifts against the tracer,
+//! `V_bath = -V M/(N m)`. With `s = N m / (N m + M)` this gives, for every finite `N`,
+//! `<V^2> = s d kT/M` (exact), a velocity correlation that decays with `gamma_0 / s`, and `D = s^2 kT/(M gamma_0)`.
+//! Between walls `s = 1`.
+//!
+//! The friction itself is measured from the kicks: in equilibrium `2 <V.dV> = -<|dV|^2>` per collision, so
+//! `gamma_0 = <|dV|^2 per time> / (2 d kT/M)`, exact at any density and any mass.
+
+mod bath;
+
+use corpuscle_core::{Axis as Faces, Engine, Failure, Invalid, particles::ball_volume};
+use corpuscle_observe::chart::{Axis, Chart, Scale, Series, Style};
+use corpuscle_observe::{Check, Curves, Estimate, Histogram, Schedule, msd, theory, vacf};
+use corpuscle_scene::{Colour, Colouring, Scene, TrailPoint};
+
+use crate::{Action, Experiment, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, gas};
+use bath::{Bath, TRACER};
+
+/// The registry's entry.
+pub(crate) static EXPERIMENT: Experiment = Experiment {
+    name: "brownian",
+    title: "Brownian motion",
+    summary: "A heavy particle in a bath of light ones: its zigzag path, how far it gets, how it forgets its velocity, and \
+              Perrin's way from there to k T.",
+    dimensions: &[2, 3],
+    engines: &["event-driven"],
+    parameters: PARAMETERS,
+    start,
+};
+
+static PARAMETERS: &[Parameter] = &[
+    Parameter {
+        name: "dimension",
+        unit: "",
+        help: "Discs in the plane or spheres in space.",
+        kind: Kind::Choice { default: "2", options: &["2", "3"] },
+    },
+    Parameter {
+        name: "boundary",
+        unit: "",
+        help: "A periodic box, or walls, between which the displacement saturates.",
+        kind: Kind::Choice { default: "periodic", options: &["periodic", "walls"] },
+    },
+    Parameter {
+        name: "particles",
+        unit: "",
+        help: "Number of bath particles.",
+        kind: Kind::Whole { default: 300, least: 1, most: 100_000 },
+    },
+    Parameter {
+        name: "packing_fraction",
+        unit: "",
+        help: "Volume of all bath particles over that of the box. Theory is for a dilute bath.",
+        kind: Kind::Real { default: 0.01, least: 1e-6, most: 0.4 },
+    },
+    Parameter {
+        name: "bath_radius",
+        unit: "",
+        help: "Radius of a bath particle; its mass is 1.",
+        kind: Kind::Real { default: 0.5, least: 1e-3, most: 1e3 },
+    },
+    Parameter {
+        name: "radius",
+        unit: "",
+        help: "Radius of the heavy particle.",
+        kind: Kind::Real { default: 2.5, least: 1e-3, most: 1e4 },
+    },
+    Parameter {
+        name: "mass",
+        unit: "",
+        help: "Mass of the heavy particle, in masses of a bath particle.",
+        kind: Kind::Real { default: 30.0, least: 1.0, most: 1e6 },
+    },
+    Parameter {
+        name: "temperature",
+        unit: "",
+        help: "Temperature k_B T.",
+        kind: Kind::Real { default: 1.0, least: 1e-6, most: 1e6 },
+    },
+    Parameter {
+        name: "duration",
+        unit: "1/γ",
+        help: "How long is measured, in relaxation times of the heavy particle's velocity.",
+        kind: Kind::Real { default: 60.0, least: 1.0, most: 1e6 },
+    },
+    Parameter {
+        name: "replicas",
+        unit: "",
+        help: "Independent baths; their scatter gives the error bars. The first is on show.",
+        kind: Kind::Whole { default: 48, least: 2, most: 10_000 },
+    },
+];
+
+/// Samples per relaxation time: Simpson's rule on the velocity correlation is then good to `20^-4 / 180`.
+const RESOLUTION: f64 = 20.0;
+/// Longest lag of the velocity correlation in relaxation times: what follows is `exp(-7)` of the whole.
+const MEMORY: f64 = 7.0;
+/// Lags, in relaxation times, between which the displacement is taken as diffusive: memory has gone by `exp(-5)`.
+const DIFFUSIVE: (f64, f64) = (5.0, 10.0);
+/// Points of the trail on show.
+const TRAIL: usize = 6000;
+
+/// What all baths have in common.
+#[derive(Clone, Debug)]
+struct Set<const D: usize> {
+    seed: u64,
+    particles: usize,
+    bath_radius: f64,
+    radius: f64,
+    mass: f64,
+    temperature: f64,
+    faces: Faces,
+    side: f64,
+    /// Collisions of a bath particle per time.
+    collision_rate: f64,
+    /// Friction `gamma_0` by Enskog's theory.
+    friction: f64,
+    /// `s`: 1 between walls, `N m / (N m + M)` where total momentum is zero.
+    share: f64,
+    interval: f64,
+    longest_lag: f64,
+}
+
+impl<const D: usize> Set<D> {
+    fn new(settings: &Settings) -> Result<Self, Invalid> {
+        let (particles, bath_radius, radius) = (settings.whole("particles"), settings.real("bath_radius"), settings.real("radius"));
+        let (mass, temperature) = (settings.real("mass"), settings.real("temperature"));
+        let side = gas::side::<D>(particles, bath_radius, settings.real("packing_fraction"));
+        let contact = radius + bath_radius;
+        if 4.0 * contact > side {
+            return Err(settings.invalid(
+                "radius",
+                format!("a tracer that leaves room in the box of side {side:.3}: at most {:.3}", 0.25 * side - bath_radius),
+            ));
+        }
+        let faces = if settings.word("boundary") == "walls" { Faces::Walls } else { Faces::Periodic };
+        // The tracer keeps the centres of the bath out of its own surroundings: the rest is denser.
+        let density = particles as f64 / (side.powi(D as i32) - ball_volume::<D>(contact));
+        let chi =
+            theory::contact_value_of_tracer::<D>(theory::packing_fraction::<D>(density, 2.0 * bath_radius), bath_radius, radius);
+        let friction = theory::initial_friction::<D>(density, contact, chi, 1.0, mass, temperature);
+        let share = if faces == Faces::Periodic { particles as f64 / (particles as f64 + mass) } else { 1.0 };
+        let relaxation = share / friction;
+        Ok(Self {
+            seed: settings.seed,
+            particles,
+            bath_radius,
+            radius,
+            mass,
+            temperature,
+            faces,
+            side,
+            collision_rate: theory::collision_rate::<D>(density, 2.0 * bath_radius, temperature, 1.0),
+            friction,
+            share,
+            interval: relaxation / RESOLUTION,
+            longest_lag: MEMORY * relaxation,
+        })
+    }
+
+    /// Relaxation time of the tracer's velocity in this box, `s / gamma_0`.
+    fn relaxation(&self) -> f64 {
+        self.share / self.friction
+    }
+
+    /// Expected diffusion coefficient `s^2 kT/(M gamma_0)`.
+    fn diffusion(&self) -> f64 {
+        self.share * self.share * theory::diffusion_coefficient(self.temperature, self.mass, self.friction)
+    }
+
+    /// Expected mean squared displacement: Ornstein and Uhlenbeck's, with the box's own `kT` and friction.
+    fn displacement(&self, time: f64) -> f64 {
+        theory::ornstein_uhlenbeck_displacement(D, self.share * self.temperature, self.mass, self.friction / self.share, time)
+    }
+
+    /// In a closed system of `f` degrees of freedom speeds are bounded; kicks go with the cube of the relative speed, whose
+    /// mean is lower than Maxwell's by `(f/2)^(3/2) Gamma(f/2) / Gamma(f/2 + 3/2)`.
+    fn closed_system_factor(&self) -> f64 {
+        let particles = self.particles as f64 + if self.faces == Faces::Periodic { 0.0 } else { 1.0 };
+        let half = 0.5 * D as f64 * particles;
+        libm::exp(1.5 * libm::log(half) + libm::lgamma(half) - libm::lgamma(half + 1.5))
+    }
+}
+
+fn start(settings: &Settings) -> Result<Box<dyn Simulation>, Invalid> {
+    Ok(match settings.word("dimension") {
+        "3" => Box::new(Brownian::<3>::new(settings)?),
+        _ => Box::new(Brownian::<2>::new(settings)?),
+    })
+}
+
+/// The running experiment.
+struct Brownian<const D: usize> {
+    set: Set<D>,
+    duration: f64,
+    schedule: Schedule,
+    times: Vec<f64>,
+    baths: Vec<Bath<D>>,
+}
+
+impl<const D: usize> Brownian<D> {
+    fn new(settings: &Settings) -> Result<Self, Invalid> {
+        let set = Set::<D>::new(settings)?;
+        let streams: Vec<u64> = (0..settings.whole("replicas") as u64).collect();
+        let baths = ensemble::build(&streams, |&stream| Bath::new(&set, stream))?;
+        let duration = settings.real("duration") * set.relaxation();
+        // The baths noted their first sample when they were ready.
+        let schedule = Schedule::new(set.interval).after_start();
+        Ok(Self { set, duration, schedule, times: vec![0.0], baths })
+    }
+
+    fn elapsed(&self) -> f64 {
+        self.times.last().copied().unwrap_or(0.0)
+    }
+
+    fn displacements(&self) -> Curves {
+        Curves::join(self.baths.iter().map(Bath::displacement))
+    }
+
+    fn correlations(&self) -> Curves {
+        Curves::join(self.baths.iter().map(Bath::velocity))
+    }
+
+    /// `d k T` from the tracer's speed: `M <V^2> / s`.
+    fn kinetic(&self) -> Estimate {
+        let samples = self.times.len() as f64;
+        let means: Vec<f64> = self.baths.iter().map(|bath| bath.speed_squares / samples).collect();
+        Estimate::from_replicas(&means) * (self.set.mass / self.set.share)
+    }
+
+    /// Friction from the kicks, `<|dV|^2 per time> / (2 d kT/M)`.
+    fn friction(&self) -> Estimate {
+        let scale = self.set.mass / (2.0 * D as f64 * self.set.temperature * self.elapsed());
+        let rates: Vec<f64> = self.baths.iter().map(|bath| bath.kicks.squares * scale).collect();
+        Estimate::from_replicas(&rates)
+    }
+
+    /// Diffusion coefficient of each bath, by the slope of the displacement and by the integral of the correlation.
+    fn diffusion_pairs(&self) -> Vec<[f64; 2]> {
+        let time = self.set.relaxation();
+        let einstein = |bath: &Bath<D>| msd::diffusion(&bath.displacement(), D, DIFFUSIVE.0 * time, DIFFUSIVE.1 * time).mean;
+        let kubo = |bath: &Bath<D>| vacf::green_kubo(&bath.velocity(), D, MEMORY * time).mean;
+        self.baths.iter().map(|bath| [einstein(bath), kubo(bath)]).collect()
+    }
+
+    /// Displacements along each axis over [`DIFFUSIVE`]`.0` relaxation times, one after the other, bath by bath.
+    fn steps(&self) -> Vec<Vec<f64>> {
+        let stride = (DIFFUSIVE.0 * RESOLUTION) as usize;
+        let of = |bath: &Bath<D>| {
+            let places: Vec<_> = bath.path.iter().step_by(stride).collect();
+            places.windows(2).flat_map(|w| (*w[1] - *w[0]).0).collect()
+        };
+        self.baths.iter().map(of).collect()
+    }
+
+    fn displacement_chart(&self) -> Chart {
+        let curves = self.displacements();
+        let points: Vec<_> = curves.points().into_iter().filter(|(lag, _)| *lag > 0.0 && *lag <= 0.25 * self.duration).collect();
+        let (first, last) = (self.set.interval, points.last().map_or(self.duration, |p| p.0));
+        let (set, relaxation) = (&self.set, self.set.relaxation());
+        let ballistic = D as f64 * set.share * set.temperature / set.mass;
+        let measured = points.iter().map(|&(lag, value)| (lag, value.mean, value.standard_error));
+        let mut chart = Chart::new(
+            "displacement",
+            "Mean squared displacement",
+            Axis::logarithmic("time t", ""),
+            Axis::logarithmic("⟨|r(t) − r(0)|²⟩", ""),
+        )
+        .with(Series::theory("ballistic, d kT/M t²", first, 3.0 * relaxation, 2, Scale::Logarithmic, |t| ballistic * t * t))
+        .with(Series::theory("diffusive, 2 d D t", 0.3 * relaxation, last, 2, Scale::Logarithmic, |t| {
+            2.0 * D as f64 * set.diffusion() * t
+        }))
+        .with(Series::theory("Ornstein–Uhlenbeck", first, last, 100, Scale::Logarithmic, |t| set.displacement(t)));
+        if set.faces == Faces::Walls {
+            let open = set.side - 2.0 * set.radius;
+            let closed = |t| D as f64 * theory::closed_box_displacement(open, set.diffusion(), t);
+            chart = chart.with(Series::theory("diffusion between walls", relaxation, last, 100, Scale::Logarithmic, closed));
+        }
+        chart
+            .with(Series::with_errors("measured", Style::Points, measured))
+            .noting("Slope 2 while the particle still flies straight, slope 1 once the kicks have made it forget.")
+    }
+
+    fn correlation_chart(&self) -> Chart {
+        let set = &self.set;
+        let start = set.share * D as f64 * set.temperature / set.mass;
+        let points = self.correlations().points();
+        let step = points.len().div_ceil(70).max(1);
+        let measured = points.iter().step_by(step).map(|(lag, value)| (*lag, value.mean / start, value.standard_error / start));
+        let decay = set.friction / set.share;
+        Chart::new(
+            "velocity-correlation",
+            "Velocity autocorrelation",
+            Axis::linear("time t", ""),
+            Axis::linear("⟨V(0)·V(t)⟩ / ⟨V²⟩", ""),
+        )
+        .with(Series::theory("exp(−γt), Enskog friction", 0.0, set.longest_lag, 120, Scale::Linear, |t| libm::exp(-decay * t)))
+        .with(Series::with_errors("measured", Style::Points, measured))
+        .noting("The initial slope is exact; a dense fluid would remember longer (in 2-D with a long-time tail 1/t).")
+    }
+
+    fn diffusion_chart(&self) -> Chart {
+        let set = &self.set;
+        let dimension = D as f64;
+        let running = vacf::running_integral(&self.correlations(), D).points();
+        let kubo = running.iter().map(|(t, value)| (*t, value.mean, value.standard_error));
+        let einstein: Vec<_> = self
+            .displacements()
+            .points()
+            .into_iter()
+            .filter(|(lag, _)| *lag > 0.0 && *lag <= set.longest_lag)
+            .map(|(lag, value)| (lag, value.mean / (2.0 * dimension * lag), value.standard_error / (2.0 * dimension * lag)))
+            .collect();
+        Chart::new("diffusion", "Diffusion coefficient, two ways", Axis::linear("time t", ""), Axis::linear("D", ""))
+            .with(Series::theory("theory, s² kT/(Mγ)", 0.0, set.longest_lag, 2, Scale::Linear, |_| set.diffusion()))
+            .with(Series::with_errors("Green–Kubo, (1/d) ∫ ⟨V(0)·V⟩", Style::Line, kubo))
+            .with(Series::with_errors("Einstein, ⟨|Δr|²⟩ / (2 d t)", Style::Points, einstein))
+            .noting("The integral of the memory and the growth of the displacement lead to the same constant.")
+    }
+
+    fn step_chart(&self) -> Option<Chart> {
+        let set = &self.set;
+        let time = DIFFUSIVE.0 * set.relaxation();
+        let spread = (set.displacement(time) / D as f64).sqrt();
+        let mut histogram = Histogram::new(-4.0 * spread, 4.0 * spread, 32);
+        self.steps().iter().flatten().for_each(|&step| histogram.add(step));
+        if histogram.total() < 100 {
+            return None;
+        }
+        let normal = |x: f64| libm::exp(-0.5 * (x / spread) * (x / spread)) / (spread * (2.0 * std::f64::consts::PI).sqrt());
+        let bars = histogram.densities().into_iter().map(|(x, density)| (x, density.mean, density.standard_error));
+        Some(
+            Chart::new(
+                "steps",
+                format!("Displacements along one axis in {} relaxation times", DIFFUSIVE.0),
+                Axis::linear("Δx", ""),
+                Axis::linear("probability density", ""),
+            )
+            .with(Series::with_errors("measured", Style::Bars, bars))
+            .with(Series::theory("Gaussian", -4.0 * spread, 4.0 * spread, 120, Scale::Linear, normal))
+            .noting("Many independent kicks add up to a normal distribution."),
+        )
+    }
+
+    fn diffusion_checks(&self) -> Vec<Check> {
+        let set = &self.set;
+        let pairs = self.diffusion_pairs();
+        let einstein = Estimate::jackknife(&pairs, |[einstein, _]| einstein);
+        let difference = Estimate::jackknife(&pairs, |[einstein, kubo]| einstein - kubo);
+        // Perrin: M gamma D / s^2, with D and gamma as measured in the same baths.
+        let scale = set.mass / (set.share * set.share);
+        let rates =
+            self.baths.iter().map(|bath| bath.kicks.squares * set.mass / (2.0 * D as f64 * set.temperature * self.elapsed()));
+        let both: Vec<[f64; 2]> = pairs.iter().zip(rates).map(|(pair, rate)| [pair[0], rate]).collect();
+        let perrin = Estimate::jackknife(&both, |[diffusion, friction]| scale * diffusion * friction);
+        let powers: Vec<[f64; 2]> = self
+            .steps()
+            .iter()
+            .map(|steps| {
+                let mean = |power: i32| steps.iter().map(|x| x.powi(power)).sum::<f64>() / steps.len() as f64;
+                [mean(2), mean(4)]
+            })
+            .collect();
+        let kurtosis = Estimate::jackknife(&powers, |[second, fourth]| fourth / (second * second));
+        vec![
+            einstein.check("diffusion coefficient D, Einstein", set.diffusion(), "s^2 kT/(M gamma_0), Enskog: dilute bath, M >> m"),
+            difference.check("D, Einstein less Green-Kubo", 0.0, "Kubo 1957, doi:10.1143/JPSJ.12.570"),
+            perrin.check(
+                "k_B T by Perrin's way, M gamma D / s^2",
+                set.temperature,
+                "Einstein 1905, doi:10.1002/andp.19053220806; Perrin 1909",
+            ),
+            kurtosis.check("kurtosis of the displacements", 3.0, "Gaussian by the central limit theorem"),
+        ]
+    }
+}
+
+impl<const D: usize> Simulation for Brownian<D> {
+    fn time(&self) -> f64 {
+        self.baths[0].time()
+    }
+
+    fn end(&self) -> f64 {
+        self.duration
+    }
+
+    fn advance(&mut self, to: f64) -> Result<(), Failure> {
+        let set = &self.set;
+        while let Some(time) = self.schedule.due(to) {
+            ensemble::for_each(&mut self.baths, |bath| {
+                bath.advance(time)?;
+                bath.sample(set);
+                Ok(())
+            })?;
+            self.times.push(time);
+        }
+        self.baths[0].advance(to)
+    }
+
+    fn draw(&self, scene: &mut Scene) {
+        scene.clear();
+        let bath = &self.baths[0];
+        drawing::add_event_driven(scene, &bath.engine, |i| f64::from(u8::from(i == TRACER)));
+        scene.colouring = Colouring::Species(vec!["bath".into(), "heavy particle".into()]);
+        let trail = scene.trail(0, TRAIL, Colour::Accent(1));
+        trail.width = 2.0;
+        let boundary = bath.engine.boundary();
+        // The engine's clock, which the bodies run by, was started before the measurement.
+        let clock = bath.engine.time() - bath.time();
+        let drawn = trail.points().back().map_or(-1.0, |point| point.time - clock);
+        let mut before = None;
+        for (&path, &time) in bath.path.iter().zip(&self.times) {
+            let place = boundary.wrap(path);
+            if time > drawn {
+                let point = TrailPoint { position: place.to_three(), time: clock + time };
+                // Through a periodic face: the wrapped step is not the real one.
+                let through = before.is_some_and(|(last_path, last_place)| {
+                    ((place - last_place) - (path - last_path)).norm() > 0.5 * self.set.side
+                });
+                if through { trail.jump(point) } else { trail.push(point) }
+            }
+            before = Some((path, place));
+        }
+        let away = bath.path.last().zip(bath.path.first()).map_or(0.0, |(now, start)| (*now - *start).norm());
+        scene.title = EXPERIMENT.title.into();
+        scene.caption = format!(
+            "t = {:.0}   distance from the start {away:.1} (theory √⟨r²⟩ = {:.1})   {} kicks",
+            bath.time(),
+            self.set.displacement(self.elapsed()).sqrt(),
+            bath.kicks.count
+        );
+    }
+
+    fn charts(&self) -> Vec<Chart> {
+        let mut charts = vec![];
+        if self.times.len() > 2 {
+            charts.extend([self.displacement_chart(), self.correlation_chart(), self.diffusion_chart()]);
+        }
+        charts.extend(self.step_chart());
+        charts
+    }
+
+    fn checks(&self) -> Vec<Check> {
+        let (set, elapsed) = (&self.set, self.elapsed());
+        let mut checks = vec![];
+        if elapsed >= 5.0 * set.relaxation() {
+            let exact = if set.faces == Faces::Periodic {
+                "equipartition at zero total momentum: M <V^2> = s d kT"
+            } else {
+                "equipartition"
+            };
+            checks.push((self.kinetic() / D as f64).check("k_B T of the heavy particle", set.temperature, exact));
+            // Near walls the bath cannot come from all sides: theory knows the open bath only.
+            if set.faces == Faces::Periodic {
+                checks.push(self.friction().check(
+                    "friction γ from the kicks",
+                    set.friction * set.closed_system_factor(),
+                    "Enskog, binary collisions; exact given the contact value",
+                ));
+            }
+        }
+        // Long lags need many origins; between walls there is no free diffusion.
+        if elapsed >= 2.0 * DIFFUSIVE.1 * set.relaxation() && set.faces == Faces::Periodic {
+            checks.extend(self.diffusion_checks());
+        }
+        let honesty = self.honesty();
+        if let Some(drift) = honesty.energy_drift {
+            checks.push(Check::at_most("relative energy drift", drift, 1e-11, "elastic collisions, double precision"));
+        }
+        if let Some(drift) = honesty.momentum_drift {
+            checks.push(Check::at_most("relative momentum drift", drift, 1e-11, "no walls, double precision"));
+        }
+        checks
+    }
+
+    fn honesty(&self) -> Honesty {
+        let largest = |drift: fn(&Bath<D>) -> Option<f64>| self.baths.iter().filter_map(drift).fold(0.0, f64::max);
+        let overlap =
+            |bath: &Bath<D>| bath.engine.boundary().largest_overlap(&bath.engine.snapshot()) / (2.0 * self.set.bath_radius);
+        Honesty {
+            engine: "event-driven".into(),
+            work: self.baths.iter().map(|bath| bath.engine.counts().collisions).sum(),
+            work_unit: "collisions",
+            energy_drift: Some(largest(|bath| bath.energy.largest())),
+            momentum_drift: (self.set.faces == Faces::Periodic).then(|| largest(|bath| bath.momentum.largest())),
+            largest_overlap: Some(self.baths.iter().map(overlap).fold(0.0, f64::max)),
+            ..Honesty::default()
+        }
+    }
+
+    fn moments(&self) -> Vec<f64> {
+        vec![0.0, 2.0 * self.set.relaxation(), 10.0 * self.set.relaxation()]
+    }
+
+    fn act(&mut self, action: Action) -> Result<(), Invalid> {
+        let Action::Reverse = action;
+        self.baths[0].engine.reverse_velocities();
+        Ok(())
+    }
+}
