@@ -26,7 +26,10 @@ fn agrees(changes: &[(&str, &str)]) {
     let mut scores = vec![];
     for seed in 1..=10 {
         for check in checks(&settings(seed, changes), 1) {
-            println!("{seed} {}: {} ± {:?}, expected {}, z {:?}", check.quantity, check.measured, check.standard_error, check.expected, check.z);
+            println!(
+                "{seed} {}: {} ± {:?}, expected {}, z {:?}",
+                check.quantity, check.measured, check.standard_error, check.expected, check.z
+            );
             assert!(check.passed, "seed {seed}: {check:?}");
             scores.extend(check.z);
         }

@@ -49,13 +49,13 @@ static PARAMETERS: &[Parameter] = &[
         name: "particles",
         unit: "",
         help: "Number of bath particles.",
-        kind: Kind::Whole { default: 300, least: 1, most: 100_000 },
+        kind: Kind::Whole { default: 200, least: 1, most: 100_000 },
     },
     Parameter {
         name: "packing_fraction",
         unit: "",
         help: "Volume of all bath particles over that of the box. Theory is for a dilute bath.",
-        kind: Kind::Real { default: 0.01, least: 1e-6, most: 0.4 },
+        kind: Kind::Real { default: 0.004, least: 1e-6, most: 0.4 },
     },
     Parameter {
         name: "bath_radius",
@@ -67,7 +67,7 @@ static PARAMETERS: &[Parameter] = &[
         name: "radius",
         unit: "",
         help: "Radius of the heavy particle.",
-        kind: Kind::Real { default: 2.5, least: 1e-3, most: 1e4 },
+        kind: Kind::Real { default: 2.0, least: 1e-3, most: 1e4 },
     },
     Parameter {
         name: "mass",
