@@ -25,7 +25,7 @@ use start::{PRECISE, Start};
 use triangle::Triangle;
 
 /// Three stars and dust.
-pub static EXPERIMENT: Experiment = Experiment {
+pub(crate) static EXPERIMENT: Experiment = Experiment {
     name: "three-body",
     title: "Three stars and dust",
     summary: "Gravity among three stars and dust grains: orbits that return, orbits that fly apart, and how small \
@@ -119,6 +119,8 @@ struct ThreeBody {
     other_energy_error: Vec<(f64, f64)>,
     /// Distance of the stars from their start after one period.
     closure: Option<f64>,
+    /// The same with twice the step, for an integrator with a fixed one.
+    coarse_closure: Option<f64>,
     /// Greatest coordinate of a star so far.
     reach: f64,
     samples: u64,
@@ -154,6 +156,7 @@ impl ThreeBody {
             energy_error: vec![],
             other_energy_error: vec![],
             closure: None,
+            coarse_closure: None,
             reach: 0.0,
             samples: 0,
             time: 0.0,
@@ -200,16 +203,20 @@ impl ThreeBody {
     /// Takes in the frames all runs have sampled.
     fn take_in(&mut self) {
         let mut batches = self.runs.iter_mut().map(|run| std::mem::take(&mut run.frames));
-        let (own, other) = (batches.next().unwrap_or_default(), batches.next().unwrap_or_default());
+        let mut next = || batches.next().unwrap_or_default();
+        let (own, other, mut coarse) = (next(), next(), next().into_iter());
         drop(batches);
         for (frame, other) in own.into_iter().zip(other) {
+            let coarse = coarse.next();
             self.parting.see(frame.time, &frame.position, &other.position);
             self.energy_error.push((frame.time, frame.energy_error));
             self.other_energy_error.push((frame.time, other.energy_error));
             let coordinates = frame.position[..3].iter().flat_map(|r| r.0);
             self.reach = coordinates.fold(self.reach, |reach, x| reach.max(x.abs()));
             if self.closure.is_none() && self.start.period.is_some_and(|period| frame.time >= period * (1.0 - 1e-12)) {
-                self.closure = Some(farthest(&frame.position[..3], &self.start.particles.position[..3]));
+                let stars = &self.start.particles.position[..3];
+                self.closure = Some(farthest(&frame.position[..3], stars));
+                self.coarse_closure = coarse.map(|frame| farthest(&frame.position, stars));
             }
             if self.path.len() == KEPT {
                 self.path.pop_front();
@@ -237,9 +244,8 @@ impl Simulation for ThreeBody {
         let last = (to / interval * (1.0 + 1e-12)).floor() as u64;
         while self.samples <= last {
             let (from, until) = (self.samples, (self.samples + BATCH).min(last + 1));
-            let outcome = ensemble::for_each(&mut self.runs, |run| {
-                (from..until).try_for_each(|sample| run.sample(sample as f64 * interval))
-            });
+            let outcome =
+                ensemble::for_each(&mut self.runs, |run| (from..until).try_for_each(|sample| run.sample(sample as f64 * interval)));
             self.take_in();
             outcome?;
         }

@@ -66,8 +66,7 @@ impl Parting {
         }
         self.neighbours.push(mean((1..n).map(|k| distance(grain(0, k - 1), grain(0, k)))));
         self.unrelated.push(mean((0..n / 2).map(|k| distance(grain(0, k), grain(0, k + n / 2)))));
-        let apart: [Vec<f64>; 2] =
-            std::array::from_fn(|copy| (0..n).map(|k| distance(grain(0, k), grain(copy + 1, k))).collect());
+        let apart: [Vec<f64>; 2] = std::array::from_fn(|copy| (0..n).map(|k| distance(grain(0, k), grain(copy + 1, k))).collect());
         for (series, of_each) in self.twins.iter_mut().zip(&apart) {
             series.push(mean(of_each.iter().copied()));
         }

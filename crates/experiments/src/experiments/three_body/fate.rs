@@ -58,7 +58,8 @@ impl Fate {
     /// The outcome of Burrau's problem: masses 4 and 5 bound to each other, mass 3 leaving for good.
     pub(crate) fn checks_of_burrau(stars: &Particles<2>, constant: f64, time: f64) -> Vec<Check> {
         let fate = Self::of_single(stars, constant, 0);
-        let reference = format!("Szebehely and Peters 1967 (doi:10.1086/110355): mass 3 escapes, 4 and 5 stay a binary; at t = {time:.1}");
+        let reference =
+            format!("Szebehely and Peters 1967 (doi:10.1086/110355): mass 3 escapes, 4 and 5 stay a binary; at t = {time:.1}");
         vec![
             Check::at_most("Pythagorean problem: energy of the pair 4-5 in its own frame", fate.pair_energy, 0.0, &*reference),
             Check::at_least("Pythagorean problem: energy of mass 3 about the pair", fate.single_energy, 0.0, &*reference),

@@ -53,12 +53,8 @@ impl ThreeBody {
 
     fn caption(&self) -> String {
         let run = &self.runs[0];
-        let mut caption = format!(
-            "t = {:.2}   {}   energy error {:.0e}",
-            self.time,
-            run.engine.integrator().name(),
-            run.relative_energy_error()
-        );
+        let mut caption =
+            format!("t = {:.2}   {}   energy error {:.0e}", self.time, run.engine.integrator().name(), run.relative_energy_error());
         match self.start.preset.as_str() {
             "pythagorean" => {
                 let fate = Fate::of(run.engine.particles(), self.start.constant);
