@@ -1,1 +1,7 @@
-fn main() {}
+//! The `corpuscle` command.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    corpuscle::main(corpuscle_experiments::REGISTRY)
+}

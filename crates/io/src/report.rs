@@ -22,7 +22,7 @@ const ROWS_SHOWN: usize = 24;
 
 /// The report as an HTML page.
 pub fn html(record: &Record) -> String {
-    let title = escape(record.scenario.experiment.title);
+    let title = escape(record.scenario.title());
     let mut page = format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
@@ -45,7 +45,7 @@ pub fn html(record: &Record) -> String {
     let _ = write!(
         page,
         "<footer>Corpuscle {VERSION} · {} · seed {} · complete in itself: this page loads nothing.</footer>\n</body>\n</html>\n",
-        escape(record.scenario.experiment.name),
+        escape(record.scenario.name()),
         record.scenario.settings.seed
     );
     page
@@ -61,7 +61,7 @@ fn header(record: &Record, title: &str) -> String {
     let mut out = format!(
         "<header>\n<p class=\"kicker\">Corpuscle · laboratory report</p>\n<h1>{title}</h1>\n<p class=\"lede\">{}</p>\n\
          <p class=\"verdict {class}\">{verdict}</p>\n",
-        escape(record.scenario.experiment.summary)
+        escape(record.scenario.summary())
     );
     let stopped = match &record.ending {
         Ending::Finished => None,
@@ -198,6 +198,9 @@ fn table(table: &Table) -> String {
 }
 
 fn parameters(record: &Record) -> String {
+    if record.scenario.parameters().next().is_none() {
+        return String::new();
+    }
     let mut out = String::from(
         "<div id=\"parameters\"><h2>Parameters</h2>\n<div class=\"scroll\"><table><thead><tr><th>Key</th><th class=\"number\">Value</th>\
          <th>Meaning</th></tr></thead>\n<tbody>\n",

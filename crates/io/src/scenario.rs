@@ -9,6 +9,9 @@
 //! temperature = 2.0
 //! ```
 //!
+//! A file without the key `experiment` describes a system of its own (box, particles, forces, engine), as
+//! [`corpuscle_experiments::free`] declares it; `seed` is a key of both.
+//!
 //! Every key is known, typed and ranged; what is not is refused with its line and column, and a near miss is named.
 
 use std::collections::BTreeMap;
@@ -18,7 +21,8 @@ use std::io::Read;
 use std::path::Path;
 
 use corpuscle_core::Invalid;
-use corpuscle_experiments::{Experiment, Parameter, Settings, Simulation, Value};
+use corpuscle_experiments::{Experiment, Parameter, Settings, Simulation, Value, free};
+use serde::Deserialize;
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
@@ -37,12 +41,21 @@ const LONGEST_FILE: u64 = 16 << 20;
 /// The keys at the top of a file.
 const KEYS: [&str; 4] = ["experiment", "seed", "duration", "parameters"];
 
+/// What a scenario runs.
+#[derive(Clone)]
+pub enum Subject {
+    /// One of the registered experiments.
+    Experiment(&'static Experiment),
+    /// A system described by the file itself.
+    Free(Box<free::System>),
+}
+
 /// What to run: an experiment, its parameters, the seed and for how long.
 #[derive(Clone)]
 pub struct Scenario {
-    /// The experiment.
-    pub experiment: &'static Experiment,
-    /// Its parameters and the seed.
+    /// What to run.
+    pub subject: Subject,
+    /// Its parameters, of which a free system has none, and the seed.
     pub settings: Settings,
     /// Physical time to run for, where it differs from what the experiment needs.
     pub duration: Option<f64>,
@@ -53,8 +66,35 @@ pub struct Scenario {
 impl Scenario {
     /// An experiment with its defaults.
     pub fn new(experiment: &'static Experiment) -> Self {
-        let settings = Settings::new(experiment.parameters, DEFAULT_SEED);
-        Self { experiment, settings, duration: None, file: Origin::default(), origins: BTreeMap::new() }
+        Self::of(Subject::Experiment(experiment), Settings::new(experiment.parameters, DEFAULT_SEED))
+    }
+
+    fn of(subject: Subject, settings: Settings) -> Self {
+        Self { subject, settings, duration: None, file: Origin::default(), origins: BTreeMap::new() }
+    }
+
+    /// Name of the experiment; `free` for a system of the file's own.
+    pub fn name(&self) -> &str {
+        match &self.subject {
+            Subject::Experiment(experiment) => experiment.name,
+            Subject::Free(_) => "free",
+        }
+    }
+
+    /// Its title.
+    pub fn title(&self) -> &str {
+        match &self.subject {
+            Subject::Experiment(experiment) => experiment.title,
+            Subject::Free(system) => &system.title,
+        }
+    }
+
+    /// What it shows.
+    pub fn summary(&self) -> &str {
+        match &self.subject {
+            Subject::Experiment(experiment) => experiment.summary,
+            Subject::Free(_) => "A system described by its own scenario file, measured beside the theory that applies.",
+        }
     }
 
     /// What a word on the command line means: the name of an experiment, or else a scenario file.
@@ -110,9 +150,14 @@ impl Scenario {
             let invalid = Invalid::new("text", found, format!("TOML: {}", error.message().replace('\n', "; ")));
             Refusal::new(Origin::File(path.into(), place), invalid)
         })?;
+        let keys = document.get_ref();
+        if !keys.contains_key("experiment") && (keys.contains_key("engine") || keys.contains_key("box")) {
+            return reader.free_system(document);
+        }
         let document = document.get_ref();
         let name = document.get("experiment").ok_or_else(|| {
             let expected = one_of("", registry.iter().map(|experiment| experiment.name));
+            let expected = format!("{expected}; or engine, box, particles and so on of a system of your own");
             Refusal::new(Origin::File(path.into(), None), Invalid::new("experiment", "(missing)", expected))
         })?;
         let experiment = name.get_ref().as_str().and_then(|name| registry.iter().find(|known| known.name == name));
@@ -124,11 +169,7 @@ impl Scenario {
         for (key, value) in document {
             match key.get_ref().as_ref() {
                 "experiment" => {}
-                "seed" => {
-                    let seed =
-                        value_of(value.get_ref()).and_then(|value| if let Value::Whole(seed) = value { Some(seed) } else { None });
-                    scenario.settings.seed = seed.ok_or_else(|| reader.refuse("seed", value, SEED))?;
-                }
+                "seed" => scenario.settings.seed = reader.seed(value)?,
                 "duration" => {
                     let duration = match value_of(value.get_ref()) {
                         Some(Value::Real(duration)) => Some(duration),
@@ -142,7 +183,7 @@ impl Scenario {
                 "parameters" => {
                     let table = value.get_ref().as_table();
                     let table = table.ok_or_else(|| reader.refuse("parameters", value, "a table, [parameters]"))?;
-                    scenario.read_parameters(&reader, table)?;
+                    scenario.read_parameters(&reader, table, experiment)?;
                 }
                 other => return Err(reader.unknown(key, &top_level_keys(experiment, other))),
             }
@@ -150,11 +191,11 @@ impl Scenario {
         Ok(scenario)
     }
 
-    fn read_parameters(&mut self, reader: &Reader, table: &DeTable) -> Result<(), Refusal> {
+    fn read_parameters(&mut self, reader: &Reader, table: &DeTable, experiment: &'static Experiment) -> Result<(), Refusal> {
         for (key, value) in table {
             let name = key.get_ref().as_ref();
             let Ok(parameter) = self.settings.declaration(name) else {
-                return Err(reader.unknown(key, &one_of(name, names(self.experiment))));
+                return Err(reader.unknown(key, &one_of(name, names(experiment))));
             };
             let accepted = value_of(value.get_ref()).and_then(|value| self.settings.set(name, value).ok());
             accepted.ok_or_else(|| reader.refuse(name, value, parameter.expected()))?;
@@ -169,8 +210,11 @@ impl Scenario {
     /// [`Refusal`] when the key is unknown or the value not accepted.
     pub fn set(&mut self, key: &str, text: &str) -> Result<(), Refusal> {
         let refuse = |invalid| Refusal::new(Origin::CommandLine, invalid);
+        let Subject::Experiment(experiment) = self.subject else {
+            return Err(refuse(Invalid::new(key, text, "no --set with a free system, whose file is to be changed instead")));
+        };
         if self.settings.declaration(key).is_err() {
-            return Err(refuse(Invalid::new(key, "(an unknown key)", one_of(key, names(self.experiment)))));
+            return Err(refuse(Invalid::new(key, "(an unknown key)", one_of(key, names(experiment)))));
         }
         self.settings.set_text(key, text).map_err(refuse)?;
         self.origins.insert(key.into(), Origin::CommandLine);
@@ -185,7 +229,10 @@ impl Scenario {
         if !is_duration(duration) {
             return Err(Refusal::new(Origin::CommandLine, Invalid::new("duration", duration, DURATION)));
         }
-        self.duration = Some(duration);
+        match &mut self.subject {
+            Subject::Experiment(_) => self.duration = Some(duration),
+            Subject::Free(system) => system.duration = duration,
+        }
         self.origins.insert("duration".into(), Origin::CommandLine);
         Ok(())
     }
@@ -198,12 +245,20 @@ impl Scenario {
     /// Sets the system up.
     ///
     /// # Errors
-    /// [`Refusal`] when the parameters do not go together; it points at the one that the experiment names.
+    /// [`Refusal`] when the values do not go together; it points at the one that is named as the cause.
     pub fn start(&self) -> Result<Box<dyn Simulation>, Refusal> {
-        (self.experiment.start)(&self.settings).map_err(|invalid| {
-            let origin = self.origins.get(&invalid.key).unwrap_or(&self.file).clone();
-            Refusal::new(origin, invalid)
-        })
+        let started = match &self.subject {
+            Subject::Experiment(experiment) => (experiment.start)(&self.settings),
+            Subject::Free(system) => free::start(system, self.settings.seed),
+        };
+        started.map_err(|invalid| Refusal::new(self.origin(&invalid.key), invalid))
+    }
+
+    /// Where the value of a key came from, or if it was not given, the nearest table around it: `species[0].radius`, then
+    /// `species[0]`, then the file.
+    fn origin(&self, key: &str) -> Origin {
+        let around = std::iter::successors(Some(key), |key| key.rsplit_once('.').map(|(table, _)| table));
+        around.filter_map(|key| self.origins.get(key)).next().unwrap_or(&self.file).clone()
     }
 
     /// The scenario as a file that gives the same run again, bit for bit: numbers are written with as many digits as
@@ -212,14 +267,21 @@ impl Scenario {
     /// Parameters left at their defaults stand there as comments: an experiment may ask which ones were given, so that
     /// naming all of them could change what it does.
     pub fn to_toml(&self) -> String {
-        let mut text = format!(
-            "# Corpuscle {VERSION}. To run it again: corpuscle run scenario.toml\nexperiment = {}\nseed = {}\n",
-            toml_text(&Value::Word(self.experiment.name.into())),
-            self.settings.seed
-        );
-        if let Some(duration) = self.duration {
-            let _ = writeln!(text, "duration = {duration:?}");
+        let head = format!("# Corpuscle {VERSION}. To run it again: corpuscle run scenario.toml\n");
+        let seed = format!("seed = {}\n", self.settings.seed);
+        match &self.subject {
+            // What was read from TOML can be written as TOML.
+            Subject::Free(system) => head + &seed + &toml::to_string(system.as_ref()).unwrap_or_default(),
+            Subject::Experiment(experiment) => {
+                head + &format!("experiment = {}\n", toml_text(&Value::Word(experiment.name.into())))
+                    + &seed
+                    + &self.parameters_toml()
+            }
         }
+    }
+
+    fn parameters_toml(&self) -> String {
+        let mut text = self.duration.map(|duration| format!("duration = {duration:?}\n")).unwrap_or_default();
         text += "\n[parameters]\n";
         for (parameter, value, given) in self.parameters() {
             let unit = if parameter.unit.is_empty() { String::new() } else { format!(" # {}", parameter.unit) };
@@ -286,6 +348,51 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
+    /// A system of the file's own.
+    fn free_system(&self, mut document: Spanned<DeTable>) -> Result<Scenario, Refusal> {
+        let mut seed = DEFAULT_SEED;
+        if let Some(value) = document.get_mut().remove("seed") {
+            seed = self.seed(&value)?;
+        }
+        let mut origins = BTreeMap::new();
+        self.collect("", document.get_ref(), &mut origins);
+        let system = free::System::deserialize(toml::de::Deserializer::from(document)).map_err(|error| {
+            let place = error.span().map(|span| Place::of(self.text, span.start));
+            let found = error.span().map_or_else(|| "(incomplete)".into(), |span| quoted(self.text, span));
+            let invalid = Invalid::new("system", found, error.message().replace('\n', "; "));
+            Refusal::new(Origin::File(self.path.into(), place), invalid)
+        })?;
+        let scenario = Scenario::of(Subject::Free(Box::new(system)), Settings::new(&[], seed));
+        Ok(Scenario { file: Origin::File(self.path.into(), None), origins, ..scenario })
+    }
+
+    /// Where the keys of a table and of the tables in it stand, as paths: `box.lower`, `species[0].radius`.
+    fn collect(&self, prefix: &str, table: &DeTable, origins: &mut BTreeMap<String, Origin>) {
+        for (key, value) in table {
+            let path = format!("{prefix}{}", key.get_ref());
+            match value.get_ref() {
+                DeValue::Table(inner) => self.collect(&format!("{path}."), inner, origins),
+                DeValue::Array(items) => {
+                    for (index, item) in items.iter().enumerate() {
+                        if let Some(inner) = item.get_ref().as_table() {
+                            self.collect(&format!("{path}[{index}]."), inner, origins);
+                            origins.insert(format!("{path}[{index}]"), self.origin(item));
+                        }
+                    }
+                }
+                _ => {}
+            }
+            origins.insert(path, self.origin(value));
+        }
+    }
+
+    fn seed(&self, value: &Spanned<DeValue>) -> Result<u64, Refusal> {
+        match value_of(value.get_ref()) {
+            Some(Value::Whole(seed)) => Ok(seed),
+            _ => Err(self.refuse("seed", value, SEED)),
+        }
+    }
+
     fn origin<T>(&self, item: &Spanned<T>) -> Origin {
         Origin::File(self.path.into(), Some(Place::of(self.text, item.span().start)))
     }

@@ -5,13 +5,14 @@ use corpuscle_experiments::{Honesty, Value};
 use corpuscle_observe::Check;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
+use crate::scenario::Subject;
 use crate::{Record, Scenario, VERSION};
 
 /// The summary as JSON. Values that are not finite become `null`.
 pub fn json(record: &Record) -> String {
     let honesty = &record.honesty;
     let summary = Summary {
-        experiment: record.scenario.experiment.name,
+        experiment: record.scenario.name(),
         version: VERSION,
         seed: record.scenario.settings.seed,
         parameters: Parameters(record.scenario),
@@ -95,11 +96,14 @@ impl Quality {
     }
 }
 
-/// All parameters in the order of their declaration, those at their defaults included.
+/// All parameters in the order of their declaration, those at their defaults included; the description of a free system.
 struct Parameters<'a>(&'a Scenario);
 
 impl Serialize for Parameters<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        if let Subject::Free(system) = &self.0.subject {
+            return system.serialize(serializer);
+        }
         let mut map = serializer.serialize_map(None)?;
         for (parameter, value, _) in self.0.parameters() {
             match value {

@@ -150,3 +150,27 @@ fn deep_nesting_is_refused_and_not_followed() {
     let deep = format!("experiment = {}{}", "[".repeat(100_000), "]".repeat(100_000));
     assert!(refused(&deep).starts_with(FILE));
 }
+
+const FREE: &str = "seed = 9\nengine = \"event\"\nduration = 2.0\n\n[box]\nlower = [0.0, 0.0]\nupper = [10.0, 10.0]\nfaces = \"walls\"\n\n\
+                    [[species]]\ncount = 5\nradius = 0.3\n";
+
+#[test]
+fn a_system_of_its_own_is_read_written_and_located() {
+    let scenario = parse(FREE).unwrap();
+    assert_eq!((scenario.name(), scenario.settings.seed), ("free", 9));
+    let again = parse(&scenario.to_toml()).unwrap();
+    assert_eq!(scenario.to_toml(), again.to_toml());
+    let mut simulation = again.start().unwrap();
+    simulation.advance(0.5).unwrap();
+    assert_eq!(simulation.time(), 0.5);
+    for (from, to, message) in [
+        ("radius = 0.3", "radius = -0.3", ":12:10: species[0].radius = -0.3: expected"),
+        ("radius = 0.3", "radius = \"big\"", ":12:10: system = \"big\": expected invalid type"),
+        ("count = 5", "cuont = 5", ":11:1: system = cuont: expected unknown field `cuont`"),
+        ("seed = 9", "seed = -9", ":1:8: seed = -9: expected a whole number"),
+        ("\"event\"", "\"magic\"", ":2:10: system = \"magic\": expected unknown variant"),
+    ] {
+        let refusal = parse(&FREE.replace(from, to)).and_then(|scenario| scenario.start().map(|_| ())).unwrap_err().to_string();
+        assert!(refusal.contains(message), "{refusal}\nnot {message}");
+    }
+}

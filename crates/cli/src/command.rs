@@ -1,0 +1,58 @@
+//! The subcommands, one a file, and the arguments that several share.
+
+pub(crate) mod check;
+pub(crate) mod list;
+pub(crate) mod record;
+pub(crate) mod run;
+pub(crate) mod view;
+
+use clap::Args;
+use corpuscle_io::{Refusal, Registry, Scenario};
+
+/// What to run, and how it differs from its defaults.
+#[derive(Args)]
+pub(crate) struct Subject {
+    /// Name of an experiment, or a scenario file.
+    #[arg(value_name = "NAME|FILE")]
+    subject: String,
+    /// Set a parameter; may be given several times.
+    #[arg(long, value_name = "KEY=VALUE", value_parser = assignment, allow_hyphen_values = true)]
+    set: Vec<(String, String)>,
+    /// Seed of all random numbers [default: the file's, or 1].
+    #[arg(long)]
+    seed: Option<u64>,
+}
+
+impl Subject {
+    /// The scenario these arguments describe.
+    fn scenario(&self, registry: Registry) -> Result<Scenario, Refusal> {
+        let mut scenario = Scenario::find(registry, &self.subject)?;
+        for (key, value) in &self.set {
+            scenario.set(key, value)?;
+        }
+        if let Some(seed) = self.seed {
+            scenario.settings.seed = seed;
+        }
+        Ok(scenario)
+    }
+}
+
+fn assignment(text: &str) -> Result<(String, String), String> {
+    let (key, value) = text.split_once('=').ok_or("expected KEY=VALUE, as in temperature=2.5")?;
+    Ok((key.trim().into(), value.trim().into()))
+}
+
+/// Reads a physical time: a number, with or without an `s`.
+fn physical_time(text: &str) -> Result<f64, String> {
+    let number = text.trim().trim_end_matches('s').trim_end();
+    number.parse().ok().filter(|time: &f64| time.is_finite() && *time >= 0.0).ok_or_else(|| "expected a time, as in 2.5s".into())
+}
+
+/// Reads a number above zero.
+fn positive(text: &str) -> Result<f64, String> {
+    text.trim()
+        .parse()
+        .ok()
+        .filter(|number: &f64| number.is_finite() && *number > 0.0)
+        .ok_or_else(|| "expected a number above 0".into())
+}

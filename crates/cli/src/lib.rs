@@ -1,0 +1,68 @@
+//! The `corpuscle` command, as a library: it takes the experiments it offers, so that a program of one's own can offer
+//! others (see `examples/own_experiment.rs`).
+//!
+//! One file a subcommand under `command/`. Exit codes: 0 ran, and all checks passed; 1 could not finish; 2 bad input, and
+//! nothing was written; 3 ran, and a check failed.
+
+mod command;
+mod console;
+mod picture;
+mod progress;
+mod signal;
+mod table;
+mod trouble;
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use corpuscle_io::Registry;
+
+use command::{check, list, record, run, view};
+
+/// A physics laboratory: exact hard-particle dynamics, soft particles, gravity and waves, measured beside theory.
+#[derive(Parser)]
+#[command(name = "corpuscle", version, propagate_version = true, max_term_width = 110)]
+struct Command {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Subcommand)]
+enum Task {
+    /// List the experiments.
+    List(list::Arguments),
+    /// Run an experiment or a scenario file, print its checks, and write its report.
+    Run(run::Arguments),
+    /// Watch an experiment or a scenario file in a window, or save what the window would show.
+    View(view::Arguments),
+    /// Record a clip: .mp4, .gif, or a folder of pictures. Needs no display.
+    Record(record::Arguments),
+    /// Validate a scenario file and say what it would run, without running it.
+    Check(check::Arguments),
+}
+
+/// Runs the command with the arguments of the process.
+///
+/// A panic, which is always a fault of the program, ends with exit code 1 after its message.
+pub fn main(registry: Registry<'_>) -> ExitCode {
+    let command = Command::parse();
+    let outcome = catch_unwind(AssertUnwindSafe(|| match command.task {
+        Task::List(arguments) => list::list(&arguments, registry),
+        Task::Run(arguments) => run::run(&arguments, registry),
+        Task::View(arguments) => view::view(&arguments, registry),
+        Task::Record(arguments) => record::record(&arguments, registry),
+        Task::Check(arguments) => check::check(&arguments, registry),
+    }));
+    match outcome {
+        Ok(Ok(code)) => code,
+        Ok(Err(trouble)) => {
+            console::complain(&trouble.to_string());
+            trouble.exit_code()
+        }
+        Err(_) => {
+            console::complain("this is a fault of the program: please report it with the lines above");
+            ExitCode::from(1)
+        }
+    }
+}

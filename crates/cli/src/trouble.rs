@@ -1,0 +1,42 @@
+//! Why a command ends early, and with which exit code.
+
+use std::process::ExitCode;
+
+use corpuscle_core::Failure;
+use corpuscle_io::{Refusal, WriteError};
+use corpuscle_render::RenderError;
+
+/// What keeps a command from doing its work.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Trouble {
+    /// The input cannot be used.
+    #[error(transparent)]
+    Refused(#[from] Refusal),
+    /// The dynamics broke down.
+    #[error(transparent)]
+    Failed(#[from] Failure),
+    /// Something could not be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// Something could not be drawn.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// Standard output refuses.
+    #[error("standard output: {0}")]
+    Output(#[from] std::io::Error),
+    /// It was stopped by a signal.
+    #[error("{0}")]
+    Interrupted(String),
+}
+
+impl Trouble {
+    /// 2 when the user's input is at fault and nothing has been done, 1 otherwise.
+    pub(crate) fn exit_code(&self) -> ExitCode {
+        match self {
+            Self::Refused(_)
+            | Self::Write(WriteError::NotEmpty(_) | WriteError::NotAFolder(_))
+            | Self::Render(RenderError::Size { .. } | RenderError::Clip { .. }) => ExitCode::from(2),
+            _ => ExitCode::from(1),
+        }
+    }
+}
