@@ -50,7 +50,7 @@ pub(crate) static EXPERIMENT: Experiment = Experiment {
             name: "packing_fraction",
             unit: "",
             help: "Part of the base volume that the particles fill; the gas is the more ideal, the smaller it is.",
-            kind: Kind::Real { default: 0.01, least: 1e-4, most: 0.05 },
+            kind: Kind::Real { default: 0.01, least: 1e-4, most: 0.03 },
         },
         Parameter {
             name: "temperature",

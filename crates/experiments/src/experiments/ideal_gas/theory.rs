@@ -55,7 +55,9 @@ pub(super) fn periodic<const D: usize>(count: usize, packing: f64) -> f64 {
 /// which two centres would overlap, walls and corners included: the second virial coefficient of this very box, exact. The
 /// third and higher terms are those of the fluid, with the surface tension of a hard wall from scaled-particle theory (Reiss,
 /// Frisch, Helfand and Lebowitz 1960, doi:10.1063/1.1700883; Helfand, Frisch and Lebowitz 1961, doi:10.1063/1.1731629):
-/// `dZ = (A/N) (n gamma' - (D - 1) gamma / D)`.
+/// `dZ = (A/N) (n gamma' - (D - 1) gamma / D)`. To second order in `s/a`, the particles that the walls adsorb, `Gamma A` of
+/// them, are missing in the middle of a closed box, which costs `F/NkT = (Gamma A/N)^2 / (2 chi)`. What is left out, edges and
+/// corners from the third coefficient on, is below 1e-4 for hundreds of particles up to `eta = 0.03`.
 pub(super) fn between_walls<const D: usize>(count: usize, side: f64, diameter: f64) -> f64 {
     let (n, a, s, d) = (count as f64, side, diameter, D as f64);
     let volume = a.powi(D as i32);
@@ -76,7 +78,11 @@ pub(super) fn between_walls<const D: usize>(count: usize, side: f64, diameter: f
             (order - 1.0 + 1.0 / d) * tension * packing.powi(m)
         })
         .sum();
-    let more = (1.0 - 1.0 / n) * (1.0 - 2.0 / n) * (series::<D>(packing, 3, |_| 1.0) + area / n * surface);
+    // Gamma A/N = -(A/N) d gamma/d mu, to the two lowest orders in eta: (first (eta s/a))^2 (1 + next eta) / 2.
+    let (first, next) = if D == 2 { (32.0 / (3.0 * PI), 2.0) } else { (9.0, 4.0) };
+    let cost = 0.5 * (first * packing * s / a).powi(2);
+    let closed = cost * ((2.0 * d + 2.0) / d + next * packing * (3.0 * d + 2.0) / d);
+    let more = (1.0 - 1.0 / n) * (1.0 - 2.0 / n) * (series::<D>(packing, 3, |_| 1.0) + area / n * surface + closed);
     1.0 + pairs + more
 }
 
