@@ -87,7 +87,7 @@ impl Parting {
     /// grain's `ln` separation.
     pub(crate) fn growth(&self) -> Option<Growth> {
         let limit = |k: usize| self.unrelated[k] + libm::log(LINEAR);
-        let last = (0..self.closest.len()).find(|&k| !(self.twins[1][k] < limit(k))).unwrap_or(self.closest.len());
+        let last = (0..self.closest.len()).find(|&k| self.twins[1][k] >= limit(k)).unwrap_or(self.closest.len());
         if last < 100 || self.grains < 3 {
             return None;
         }

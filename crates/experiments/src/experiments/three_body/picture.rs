@@ -53,24 +53,18 @@ impl ThreeBody {
 
     fn caption(&self) -> String {
         let run = &self.runs[0];
-        let mut caption =
-            format!("t = {:.2}   {}   energy error {:.0e}", self.time, run.engine.integrator().name(), run.relative_energy_error());
-        match self.start.preset.as_str() {
-            "pythagorean" => {
-                let fate = Fate::of(run.engine.particles(), self.start.constant);
-                caption += &format!("   {}", fate.describe(self.start.masses()));
-            }
-            "paper" | "lagrange" if self.start.grains > 1 => {
-                if let Some(apart) = self.parting.neighbours.last() {
-                    caption += &format!("   grains {} apart are now {:.2} apart", self.start.spacing, libm::exp(*apart));
-                }
-            }
-            _ => {
-                if let Some(period) = self.start.period {
-                    caption += &format!("   period {:.2}", self.time / period);
-                }
-            }
+        let mut parts = vec![
+            format!("t = {:.2}", self.time),
+            run.engine.integrator().name().to_owned(),
+            format!("energy error {:.0e}", run.relative_energy_error()),
+        ];
+        if self.start.preset == "pythagorean" {
+            parts.push(Fate::of(run.engine.particles(), self.start.constant).describe(self.start.masses()));
+        } else if let Some(apart) = self.parting.neighbours.last().filter(|_| self.start.grains > 1) {
+            parts.push(format!("grains {} apart are now {:.2} apart", self.start.spacing, libm::exp(*apart)));
+        } else if let Some(period) = self.start.period {
+            parts.push(format!("period {:.2}", self.time / period));
         }
-        caption
+        parts.join("   ")
     }
 }

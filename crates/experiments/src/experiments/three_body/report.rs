@@ -111,17 +111,17 @@ impl ThreeBody {
                 .with(series("unrelated grains: saturation".into(), &parting.unrelated));
         }
         chart = chart.with(series(format!("one start, two integrators ({other})"), &parting.integrators));
-        let mut note = String::from("A straight rise is exponential growth.");
+        let mut notes = vec!["A straight rise is exponential growth.".to_owned()];
         if let Some(growth) = parting.growth() {
             let name = format!("exp(λ t), λ = {:.2} ± {:.2}", growth.rate.mean, growth.rate.standard_error);
             let line = |t: f64| libm::exp(growth.intercept + growth.rate.mean * t);
             chart = chart.with(Series::theory(name, 0.0, growth.until, 2, corpuscle_observe::Scale::Linear, line));
-            note += " It ends where the grains are as far apart as any two: there memory of the start is lost.";
+            notes.push("It ends where the grains are as far apart as any two: there memory of the start is lost.".into());
         }
         if let Some(horizon) = parting.horizon(self.start.view) {
-            note += &format!(" Two good integrators disagree from t = {horizon:.1} on.");
+            notes.push(format!("Two good integrators disagree from t = {horizon:.1} on."));
         }
-        chart.noting(note)
+        chart.noting(notes.join(" "))
     }
 
     pub(super) fn chart_of_energy(&self) -> Chart {

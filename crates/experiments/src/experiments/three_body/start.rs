@@ -130,8 +130,8 @@ impl Start {
         let mean = |f: &dyn Fn(usize) -> Vector<2>| (0..3).fold(Vector::ZERO, |sum, i| sum + f(i) * (masses[i] / total));
         let (centre, drift) = (mean(&|i| stars[i].0), mean(&|i| stars[i].1));
         for (r, v) in &mut stars {
-            *r = *r - centre;
-            *v = *v - drift;
+            *r -= centre;
+            *v -= drift;
         }
         let mut start = Self::with_stars("paper", masses, stars, constant, softening);
         let unit = (1.25 / (constant * total)).sqrt();

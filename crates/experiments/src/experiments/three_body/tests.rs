@@ -6,7 +6,7 @@ use corpuscle_time::Gravity;
 /// `e` shifts the phase by at most `3 pi e` a period; rounding is `4 u sqrt(n)` with the pericentre's amplification `1/(1 - e)`.
 #[test]
 fn two_bodies_return_after_keplers_period() {
-    let (masses, eccentricity, axis) = ([3.0, 2.0], 0.6, 1.7);
+    let (masses, eccentricity, axis): ([f64; 2], f64, f64) = ([3.0, 2.0], 0.6, 1.7);
     let total = masses[0] + masses[1];
     let apart = axis * (1.0 + eccentricity);
     let speed = (total * (2.0 / apart - 1.0 / axis)).sqrt();
