@@ -58,6 +58,12 @@ impl Artist {
         Ok(Self { headless, view, scene: Scene::default() })
     }
 
+    /// The same with texts and lines larger by a factor, for pictures that are shown smaller than they are.
+    pub(crate) fn enlarged(mut self, factor: f32) -> Self {
+        self.view.scale *= factor;
+        self
+    }
+
     /// Looks at the simulation without drawing, so that trails have a point for this moment. False when there are none,
     /// and looking is therefore of no use.
     pub(crate) fn look(&mut self, simulation: &dyn Simulation) -> bool {

@@ -55,6 +55,7 @@ fn header(record: &Record, title: &str) -> String {
     let (passed, all) = (record.passed(), record.checks.len());
     let (class, verdict) = match all {
         0 => ("good", "No checks in this run".to_owned()),
+        1 if passed == 1 => ("good", "✓ The check passed".to_owned()),
         _ if passed == all => ("good", format!("✓ All {all} checks passed")),
         _ => ("bad", format!("✗ {} of {all} checks failed", all - passed)),
     };
@@ -81,9 +82,9 @@ fn header(record: &Record, title: &str) -> String {
     let unit = capitalised(if record.honesty.work_unit.is_empty() { "work" } else { record.honesty.work_unit });
     facts.push((&unit, grouped(record.honesty.work)));
     if let Some(drift) = record.honesty.energy_drift {
-        facts.push(("Relative energy drift", number(drift)));
+        facts.push(("Relative energy drift", brief(drift)));
     }
-    facts.push(("Time in the engine", format!("{} s", number(round_to(record.wall.as_secs_f64(), 3)))));
+    facts.push(("Time in the engine", format!("{} s", brief(record.wall.as_secs_f64()))));
     out += "<dl class=\"facts\">";
     for (name, value) in facts {
         let _ = write!(out, "<div><dt>{}</dt><dd>{}</dd></div>", escape(name), escape(&value));
@@ -103,7 +104,10 @@ fn checks(checks: &[Check]) -> String {
     for check in checks {
         let (class, mark) = if check.passed { ("good", "✓") } else { ("bad", "✗") };
         let unit = if check.unit.is_empty() { String::new() } else { format!(" {}", check.unit) };
-        let measured = typeset(&rounded(check.measured, check.standard_error)) + &unit;
+        let measured = match check.verdict {
+            Verdict::Agreement => typeset(&rounded(check.measured, check.standard_error)),
+            Verdict::AtMost | Verdict::AtLeast => number(significant(check.measured, 3).parse().unwrap_or(check.measured)),
+        } + &unit;
         let expected = match check.verdict {
             Verdict::Agreement => number(check.expected),
             Verdict::AtMost => format!("at most {}", number(check.expected)),
@@ -225,7 +229,7 @@ fn parameters(record: &Record) -> String {
 
 fn honesty(record: &Record) -> String {
     let honesty = &record.honesty;
-    let share = |value: Option<f64>| value.map(number);
+    let share = |value: Option<f64>| value.map(brief);
     let rows = [
         ("Engine", Some(honesty.engine.clone()), "what moved the particles"),
         ("Energy", share(honesty.energy_drift), "largest relative drift seen"),
@@ -233,7 +237,7 @@ fn honesty(record: &Record) -> String {
         ("Angular momentum", share(honesty.angular_momentum_drift), "largest relative drift seen"),
         ("Overlap", share(honesty.largest_overlap), "deepest seen, over the contact distance"),
         ("Stability number", share(honesty.stability_number), "time step times highest frequency"),
-        ("Rate", record.rate().map(|rate| format!("{} a second", number(round_to(rate, 3)))), "on the clock, on this machine"),
+        ("Rate", record.rate().map(|rate| format!("{} a second", brief(rate))), "on the clock, on this machine"),
     ];
     let mut out = String::from(
         "<div id=\"honesty\"><h2>Numerical honesty</h2>\n<div class=\"scroll\"><table><thead><tr><th>What</th><th class=\"number\">Value</th>\
@@ -260,8 +264,9 @@ fn number(value: f64) -> String {
     typeset(&Rounded { error: None, ..rounded(value, None) })
 }
 
-fn round_to(value: f64, digits: usize) -> f64 {
-    significant(value, digits).parse().unwrap_or(value)
+/// A number of which only the size matters.
+fn brief(value: f64) -> String {
+    number(significant(value, 2).parse().unwrap_or(value))
 }
 
 fn capitalised(text: &str) -> String {

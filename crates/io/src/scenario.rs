@@ -57,7 +57,7 @@ pub struct Scenario {
     pub subject: Subject,
     /// Its parameters, of which a free system has none, and the seed.
     pub settings: Settings,
-    /// Physical time to run for, where it differs from what the experiment needs.
+    /// Physical time to stop at, where it differs from what the experiment needs and is not one of its parameters.
     pub duration: Option<f64>,
     file: Origin,
     origins: BTreeMap<String, Origin>,
@@ -172,12 +172,12 @@ impl Scenario {
                 "seed" => scenario.settings.seed = reader.seed(value)?,
                 "duration" => {
                     let duration = match value_of(value.get_ref()) {
-                        Some(Value::Real(duration)) => Some(duration),
-                        Some(Value::Whole(duration)) => Some(duration as f64),
-                        _ => None,
+                        Some(Value::Real(duration)) => duration,
+                        Some(Value::Whole(duration)) => duration as f64,
+                        _ => return Err(reader.refuse("duration", value, DURATION)),
                     };
-                    let duration = duration.filter(|&duration| is_duration(duration));
-                    scenario.duration = Some(duration.ok_or_else(|| reader.refuse("duration", value, DURATION))?);
+                    let last = scenario.last(duration);
+                    last.map_err(|invalid| reader.refuse("duration", value, invalid.expected))?;
                     scenario.origins.insert("duration".into(), reader.origin(value));
                 }
                 "parameters" => {
@@ -221,19 +221,28 @@ impl Scenario {
         Ok(())
     }
 
-    /// Sets the physical time to run for.
+    /// Sets for how long to run: the parameter `duration` of an experiment that declares one, in its unit, the physical
+    /// time to stop at otherwise.
     ///
     /// # Errors
-    /// [`Refusal`] when it is not a positive, finite number.
+    /// [`Refusal`] when it is not accepted.
     pub fn set_duration(&mut self, duration: f64) -> Result<(), Refusal> {
-        if !is_duration(duration) {
-            return Err(Refusal::new(Origin::CommandLine, Invalid::new("duration", duration, DURATION)));
+        self.last(duration).map_err(|invalid| Refusal::new(Origin::CommandLine, invalid))?;
+        self.origins.insert("duration".into(), Origin::CommandLine);
+        Ok(())
+    }
+
+    fn last(&mut self, duration: f64) -> Result<(), Invalid> {
+        if !(duration.is_finite() && duration > 0.0) {
+            return Err(Invalid::new("duration", duration, DURATION));
         }
         match &mut self.subject {
+            Subject::Experiment(_) if self.settings.declaration("duration").is_ok() => {
+                return self.settings.set("duration", Value::Real(duration));
+            }
             Subject::Experiment(_) => self.duration = Some(duration),
             Subject::Free(system) => system.duration = duration,
         }
-        self.origins.insert("duration".into(), Origin::CommandLine);
         Ok(())
     }
 
@@ -294,10 +303,6 @@ impl Scenario {
 
 const SEED: &str = "a whole number from 0 to 18446744073709551615";
 const DURATION: &str = "a positive number: the physical time to run for";
-
-fn is_duration(duration: f64) -> bool {
-    duration.is_finite() && duration > 0.0
-}
 
 fn names(experiment: &'static Experiment) -> impl Iterator<Item = &'static str> {
     experiment.parameters.iter().map(|parameter| parameter.name)

@@ -22,6 +22,8 @@ use crate::trouble::Trouble;
 
 /// Size of the pictures in the report.
 const SIZE: Size = Size { width: 1120, height: 720 };
+/// They are shown at about half that width.
+const SCALE: f32 = 1.6;
 /// Looks at the system between start and end, for the trails.
 const LOOKS: u32 = 600;
 
@@ -38,7 +40,7 @@ pub(crate) struct Arguments {
     /// Threads to use [default: all cores]. Results do not depend on it.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Physical time to run for [default: what the experiment needs].
+    /// How long to run, as the parameter `duration` where the experiment has one [default: what it needs].
     #[arg(long, value_name = "T", value_parser = positive)]
     duration: Option<f64>,
     /// Leave out the pictures.
@@ -89,7 +91,8 @@ pub(crate) fn run(arguments: &Arguments, registry: Registry) -> Result<ExitCode,
 
 /// Whoever draws; nobody, with the reason and the remedy said, where OpenGL is missing.
 fn artist() -> Option<Artist> {
-    Artist::new(SIZE, Palette::Dark).map_err(|error| console::complain(&format!("the pictures are left out: {error}"))).ok()
+    let artist = Artist::new(SIZE, Palette::Dark).map(|artist| artist.enlarged(SCALE));
+    artist.map_err(|error| console::complain(&format!("the pictures are left out: {error}"))).ok()
 }
 
 /// Runs the simulation to its end, or as far as it gets, with pictures on the way.
@@ -182,7 +185,10 @@ fn checks(checks: &[Check]) -> String {
         vec![
             if check.passed { "✓" } else { "✗" }.into(),
             check.quantity.clone(),
-            plain(&rounded(check.measured, check.standard_error)) + &unit,
+            match check.verdict {
+                Verdict::Agreement => plain(&rounded(check.measured, check.standard_error)),
+                Verdict::AtMost | Verdict::AtLeast => significant(check.measured, 3),
+            } + &unit,
             format!("{sign}{}{unit}", significant(check.expected, 6)),
             check.z.map(|z| format!("{z:+.2}")).unwrap_or_default(),
         ]

@@ -45,7 +45,6 @@ pub(crate) fn view(arguments: &Arguments, registry: Registry) -> Result<ExitCode
         screenshot(arguments, scenario.start()?.as_mut(), path)?;
         console::print(&format!("{name}, seed {seed}: {}\n", path.display()))?;
     } else {
-        console::print(&format!("{name}, seed {seed}; h shows the keys\n"))?;
         let Size { width, height } = arguments.size;
         let title = format!("{} · Corpuscle", scenario.title());
         window::open(registry, scenario, Options { title, width, height, palette: arguments.palette.into() })?;

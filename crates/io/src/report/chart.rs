@@ -12,18 +12,22 @@ use crate::number::{significant, superscript};
 
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 400.0;
-const LEFT: f64 = 72.0;
 const RIGHT: f64 = 14.0;
 const BOTTOM: f64 = 54.0;
-/// Average width of a character of the legend, in user units.
+/// Average width of a character, in user units.
 const CHARACTER: f64 = 6.9;
+/// Room at the left for the title of the ordinate; the texts of its ticks come on top.
+const TITLE: f64 = 34.0;
 const LEGEND_ROW: f64 = 20.0;
+const Y_TICKS: usize = 6;
 
 /// The chart as one `<svg>` element.
 pub(super) fn svg(chart: &Chart) -> String {
     let looks = looks(&chart.series);
-    let (legend, legend_height) = legend(chart, &looks);
-    let frame = Frame::new(chart, legend_height + 12.0);
+    let y = ordinate_range(chart);
+    let left = TITLE + CHARACTER * longest(&y).max(4) as f64;
+    let (legend, legend_height) = legend(chart, &looks, left);
+    let frame = Frame::new(chart, y, left, legend_height + 12.0);
     let mut out = format!(
         "<svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"{}\">{legend}",
         escape(&format!("{}: {} against {}", chart.title, chart.y.label, chart.x.label))
@@ -31,8 +35,8 @@ pub(super) fn svg(chart: &Chart) -> String {
     frame.axes(chart, &mut out);
     let _ = write!(
         out,
-        "<svg x=\"{LEFT}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\" viewBox=\"{LEFT} {:.1} {:.1} {:.1}\">",
-        frame.top, frame.width, frame.height, frame.top, frame.width, frame.height
+        "<svg x=\"{0:.1}\" y=\"{1:.1}\" width=\"{2:.1}\" height=\"{3:.1}\" viewBox=\"{0:.1} {1:.1} {2:.1} {3:.1}\">",
+        frame.left, frame.top, frame.width, frame.height
     );
     // Theory above bars and bands, points above theory: the measurement is what was done here.
     let layer = |style: Style| match style {
@@ -69,15 +73,15 @@ fn looks(series: &[Series]) -> Vec<String> {
 }
 
 /// The legend, wrapped into rows, and its height; empty for a single series.
-fn legend(chart: &Chart, looks: &[String]) -> (String, f64) {
+fn legend(chart: &Chart, looks: &[String], left: f64) -> (String, f64) {
     if chart.series.len() < 2 {
         return (String::new(), 0.0);
     }
-    let (mut out, mut x, mut row) = (String::from("<g class=\"legend\">"), LEFT, 0.0);
+    let (mut out, mut x, mut row) = (String::from("<g class=\"legend\">"), left, 0.0);
     for (series, look) in chart.series.iter().zip(looks) {
         let width = 34.0 + series.name.chars().count() as f64 * CHARACTER + 16.0;
-        if x > LEFT && x + width > WIDTH - RIGHT {
-            (x, row) = (LEFT, row + 1.0);
+        if x > left && x + width > WIDTH - RIGHT {
+            (x, row) = (left, row + 1.0);
         }
         let y = 12.0 + row * LEGEND_ROW;
         let _ = match series.style {
@@ -95,6 +99,7 @@ fn legend(chart: &Chart, looks: &[String]) -> (String, f64) {
 
 /// The rectangle the series are drawn in, and its axes.
 struct Frame {
+    left: f64,
     top: f64,
     width: f64,
     height: f64,
@@ -103,13 +108,13 @@ struct Frame {
 }
 
 impl Frame {
-    fn new(chart: &Chart, top: f64) -> Self {
+    fn new(chart: &Chart, y: Range, left: f64, top: f64) -> Self {
         let x = Range::of(chart.x.scale, chart.series.iter().flat_map(abscissae), 0.02);
-        Self { top, width: WIDTH - LEFT - RIGHT, height: HEIGHT - BOTTOM - top, x, y: ordinate_range(chart) }
+        Self { left, top, width: WIDTH - left - RIGHT, height: HEIGHT - BOTTOM - top, x, y }
     }
 
     fn point(&self, x: f64, y: f64) -> Option<(f64, f64)> {
-        Some((LEFT + self.x.place(x)? * self.width, self.down(self.y.place(y)?)))
+        Some((self.left + self.x.place(x)? * self.width, self.down(self.y.place(y)?)))
     }
 
     fn down(&self, place: f64) -> f64 {
@@ -117,10 +122,10 @@ impl Frame {
     }
 
     fn axes(&self, chart: &Chart, out: &mut String) {
-        let bottom = self.top + self.height;
+        let (left, bottom) = (self.left, self.top + self.height);
         let (x_ticks, x_exponent) = self.x.ticks(7);
         for tick in x_ticks {
-            let Some(x) = self.x.place(tick.value).map(|place| LEFT + place * self.width) else { continue };
+            let Some(x) = self.x.place(tick.value).map(|place| self.left + place * self.width) else { continue };
             let _ = match tick.text {
                 Some(text) => write!(
                     out,
@@ -132,29 +137,29 @@ impl Frame {
                 None => write!(out, "<path class=\"minor\" d=\"M{x:.1} {bottom:.1}v-4\"/>"),
             };
         }
-        let (y_ticks, y_exponent) = self.y.ticks(6);
+        let (y_ticks, y_exponent) = self.y.ticks(Y_TICKS);
         for tick in y_ticks {
             let Some(y) = self.y.place(tick.value).map(|place| self.down(place)) else { continue };
             let _ = match tick.text {
                 Some(text) => write!(
                     out,
-                    "<path class=\"grid\" d=\"M{LEFT} {y:.1}h{:.1}\"/><text class=\"tick\" x=\"{:.1}\" y=\"{:.1}\" \
+                    "<path class=\"grid\" d=\"M{left:.1} {y:.1}h{:.1}\"/><text class=\"tick\" x=\"{:.1}\" y=\"{:.1}\" \
                      text-anchor=\"end\">{text}</text>",
                     self.width,
-                    LEFT - 8.0,
+                    left - 8.0,
                     y + 4.0
                 ),
-                None => write!(out, "<path class=\"minor\" d=\"M{LEFT} {y:.1}h4\"/>"),
+                None => write!(out, "<path class=\"minor\" d=\"M{left:.1} {y:.1}h4\"/>"),
             };
         }
         let _ = write!(
             out,
-            "<path class=\"axis\" d=\"M{LEFT} {:.1}V{bottom:.1}h{:.1}\"/>\
+            "<path class=\"axis\" d=\"M{left:.1} {:.1}V{bottom:.1}h{:.1}\"/>\
              <text class=\"label\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>\
              <text class=\"label\" transform=\"translate(16 {:.1}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
             self.top,
             self.width,
-            LEFT + 0.5 * self.width,
+            left + 0.5 * self.width,
             HEIGHT - 8.0,
             axis_title(&chart.x.label, &chart.x.unit, x_exponent),
             self.top + 0.5 * self.height,
@@ -310,6 +315,11 @@ fn axis_title(label: &str, unit: &str, exponent: i32) -> String {
         (false, false) => format!(" ({power} {unit})"),
     };
     escape(&format!("{label}{parenthesis}"))
+}
+
+/// Number of characters of the longest text at the ordinate.
+fn longest(range: &Range) -> usize {
+    range.ticks(Y_TICKS).0.iter().filter_map(|tick| tick.text.as_ref()).map(|text| text.chars().count()).max().unwrap_or(0)
 }
 
 /// A path through these points.

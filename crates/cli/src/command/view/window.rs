@@ -24,6 +24,7 @@ const STEP: f64 = 1.0 / 30.0;
 /// Opens a window on a scenario and returns when it is closed.
 pub(super) fn open(registry: Registry, scenario: Scenario, options: Options) -> Result<(), Trouble> {
     let stage = Stage::new(registry.to_vec(), scenario)?;
+    console::print(&format!("{}, seed {}; h shows the keys\n", stage.scenario.name(), stage.scenario.settings.seed))?;
     Ok(view(options, stage)?)
 }
 
