@@ -69,7 +69,7 @@ static PARAMETERS: &[Parameter] = &[
         name: "masses",
         unit: "",
         help: "Number N of masses that can move.",
-        kind: Kind::Whole { default: 160, least: 3, most: 2000 },
+        kind: Kind::Whole { default: 100, least: 3, most: 2000 },
     },
     Parameter {
         name: "density_ratio",
@@ -88,7 +88,7 @@ static PARAMETERS: &[Parameter] = &[
         name: "pulse_width",
         unit: "spacings",
         help: "Standard deviation of the pulse, in spacings; the narrower, the more dispersion.",
-        kind: Kind::Real { default: 8.0, least: 1.0, most: 100.0 },
+        kind: Kind::Real { default: 5.0, least: 1.0, most: 100.0 },
     },
     Parameter {
         name: "mode",
@@ -151,7 +151,7 @@ fn preset(name: &str) -> &'static [(&'static str, &'static str)] {
         "ring" => &[("density_ratio", "1"), ("ends", "periodic")],
         "standing-wave" => &[("density_ratio", "1"), ("start", "mode"), ("masses", "60")],
         "shaker" => &[("density_ratio", "1"), ("start", "drive")],
-        "longitudinal" => &[("polarisation", "longitudinal"), ("masses", "100"), ("pulse_width", "5")],
+        "longitudinal" => &[("polarisation", "longitudinal")],
         _ => &[],
     }
 }

@@ -19,16 +19,19 @@ impl Wave {
         scene.time = self.chain.time();
         scene.title = "Waves on a chain".into();
         scene.camera = Camera::Plane { centre: [0.5 * length, 0.0], extent: [1.08 * length, 1.08 * HEIGHT * length] };
-        scene.colouring = Colouring::Speed { most: self.fastest(), unit: String::new() };
+        scene.colouring = if self.ratio == 1.0 {
+            Colouring::Uniform(Colour::Accent(4))
+        } else {
+            Colouring::Species([1.0, self.ratio].map(|ratio| format!("mass {}", self.material.mass * ratio)).into())
+        };
         let half = 0.5 * HEIGHT * length;
         if self.ratio != 1.0 {
-            let colour = Colour::Tint(if self.ratio > 1.0 { 5 } else { 4 });
+            let colour = Colour::Tint(1);
             scene.regions.push(Region { lower: [self.step, -half], upper: [length, half], colour });
             let label = |x: f64, text: String| Label { at: [x, -0.92 * half, 0.0], text, colour: Colour::Ink };
             let c = self.material.speed();
-            scene.labels.push(label(0.5 * self.step, format!("mass {}, c = {c:.3}", self.material.mass)));
-            let (mass, slow) = (self.material.mass * self.ratio, c / self.ratio.sqrt());
-            scene.labels.push(label(0.5 * (self.step + length), format!("mass {mass}, c = {slow:.3}")));
+            scene.labels.push(label(0.5 * self.step, format!("c = {c:.3}")));
+            scene.labels.push(label(0.5 * (self.step + length), format!("c = {:.3}", c / self.ratio.sqrt())));
         }
         let scale = REACH * length / self.reference();
         match design.polarisation {
@@ -42,14 +45,14 @@ impl Wave {
     }
 
     fn caption(&self, scale: f64) -> String {
-        let mut parts = vec![format!("t = {:.2}", self.chain.time())];
+        let mut parts = vec![];
         if let (Some(sample), true) = (self.samples.last(), self.ratio != 1.0) {
             let energy = sample.kinetic + sample.elastic;
             if energy > 0.0 {
-                parts.push(format!("energy left of the step {:.1} %", 100.0 * sample.left / energy));
+                parts.push(format!("{:.1} % of the energy left of the step", 100.0 * sample.left / energy));
             }
             let (r, t) = theory::step_amplitudes(self.ratio);
-            parts.push(format!("theory: reflects {r:+.3}, transmits {t:+.3}"));
+            parts.push(format!("echo {r:+.3}, onwards {t:+.3}"));
         } else if let Start::Mode(j) = self.start {
             let phase = theory::Modes::of(self.chain.design()).map_or(0.0, |modes| modes.phase(j));
             parts.push(format!("mode {j}, omega = {:.5}", theory::dispersion(self.material.omega_0(), phase)));
@@ -60,9 +63,9 @@ impl Wave {
             let wavelength = std::f64::consts::TAU * self.material.speed() / angular_frequency;
             parts.push(format!("wavelength c/f = {wavelength:.2}"));
         }
-        parts.push(format!("displacements drawn {scale:.1} times"));
+        parts.push(format!("heights × {scale:.1}"));
         if self.dalembert.is_some() {
-            parts.push("thin line: d'Alembert's string".into());
+            parts.push("thin line: string".into());
         }
         parts.join("  ·  ")
     }
@@ -75,7 +78,7 @@ impl Wave {
         (self.amplitude * ends * lighter).max(self.largest)
     }
 
-    /// The largest speed to expect, for the scale of colours.
+    /// The largest speed to expect.
     fn fastest(&self) -> f64 {
         let rate = match self.start {
             // The steepest flank of a Gaussian.
@@ -89,12 +92,17 @@ impl Wave {
         rate * self.amplitude
     }
 
+    /// Which half of the chain: its colour.
+    fn species(&self, n: usize) -> f64 {
+        f64::from(u8::from(self.ratio != 1.0 && n >= self.chain.design().count() / 2))
+    }
+
     fn radius(&self, n: usize) -> f64 {
-        // The area goes with the mass, and the largest touch at most.
+        // The volume goes with the mass, and the largest touch at most.
         let design = self.chain.design();
         let heaviest = self.material.mass * self.ratio.max(1.0);
         let size = (0.48 * design.spacing).min(0.011 * design.length());
-        (size * (design.masses[n] / heaviest).sqrt()).max(0.0022 * design.length())
+        (size * libm::cbrt(design.masses[n] / heaviest)).max(0.0022 * design.length())
     }
 
     /// Displacements drawn across, about the height `middle`.
@@ -108,7 +116,7 @@ impl Wave {
                 let x = length * f64::from(part) / f64::from(PARTS);
                 [x, height(wave.at(x, self.chain.time())), 0.0]
             };
-            let line = |part: i32| Line { from: point(part), to: point(part + 1), width: 1.0, colour: Colour::Accent(1) };
+            let line = |part: i32| Line { from: point(part), to: point(part + 1), width: 1.0, colour: Colour::Accent(5) };
             scene.lines.extend((0..PARTS).map(line));
         }
         let mut points: Vec<[f64; 3]> = (0..count).map(|n| [design.place(n), height(self.chain.displacement(n)), 0.0]).collect();
@@ -117,7 +125,7 @@ impl Wave {
             velocity: [0.0, self.chain.velocity(n), 0.0],
             time: self.chain.time(),
             radius: self.radius(n),
-            shade: 0.0,
+            shade: self.species(n),
         }));
         for (x, u) in self.chain.anchors() {
             points.push([x, height(u), 0.0]);
@@ -161,14 +169,14 @@ impl Wave {
         let scale = 0.8 / steepest;
         let places: Vec<f64> = (0..design.count()).map(|n| design.place(n) + scale * self.chain.displacement(n)).collect();
         for (n, &x) in places.iter().enumerate() {
-            let colour = if design.masses[n] > self.material.mass { Colour::Accent(5) } else { Colour::Accent(4) };
+            let colour = if self.species(n) == 1.0 { Colour::Accent(1) } else { Colour::Accent(0) };
             scene.lines.push(Line { from: [x, middle - half, 0.0], to: [x, middle + half, 0.0], width: 2.0, colour });
             scene.bodies.push(Body {
                 position: [x, middle, 0.0],
                 velocity: [self.chain.velocity(n), 0.0, 0.0],
                 time: self.chain.time(),
                 radius: self.radius(n),
-                shade: 0.0,
+                shade: self.species(n),
             });
         }
         for pair in places.windows(2) {
