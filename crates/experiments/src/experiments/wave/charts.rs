@@ -42,14 +42,14 @@ impl Wave {
         let thin = places.len().div_ceil(400);
         for (time, displacements) in self.kept.iter().rev().step_by(every).take(MOMENTS).collect::<Vec<_>>().into_iter().rev() {
             if let Some(wave) = &self.dalembert {
-                let name = format!("d'Alembert, t = {time:.4}");
+                let name = format!("d'Alembert, t = {time:.1}");
                 chart = chart.with(Series::theory(name, 0.0, length, 400, Scale::Linear, |x| wave.at(x, *time)));
             } else if let Some(exact) = self.exact(*time) {
                 let points = places.iter().copied().zip(exact);
-                chart = chart.with(Series::new(format!("sum of modes, t = {time:.4}"), Style::Theory, points));
+                chart = chart.with(Series::new(format!("sum of modes, t = {time:.1}"), Style::Theory, points));
             }
             let points = places.iter().copied().zip(displacements.iter().copied()).step_by(thin);
-            chart = chart.with(Series::new(format!("chain, t = {time:.4}"), Style::Points, points));
+            chart = chart.with(Series::new(format!("chain, t = {time:.1}"), Style::Points, points));
         }
         chart.noting("The continuous string keeps a pulse's shape for ever; the chain lets its short waves fall behind.")
     }

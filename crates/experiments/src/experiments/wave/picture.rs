@@ -19,19 +19,16 @@ impl Wave {
         scene.time = self.chain.time();
         scene.title = "Waves on a chain".into();
         scene.camera = Camera::Plane { centre: [0.5 * length, 0.0], extent: [1.08 * length, 1.08 * HEIGHT * length] };
-        scene.colouring = if self.ratio == 1.0 {
-            Colouring::Uniform(Colour::Accent(4))
-        } else {
-            Colouring::Species([1.0, self.ratio].map(|ratio| format!("mass {}", self.material.mass * ratio)).into())
-        };
+        scene.colouring = Colouring::Species(vec![]); // the labels below name the halves: no legend takes room from the chain
         let half = 0.5 * HEIGHT * length;
         if self.ratio != 1.0 {
             let colour = Colour::Tint(1);
             scene.regions.push(Region { lower: [self.step, -half], upper: [length, half], colour });
             let label = |x: f64, text: String| Label { at: [x, -0.92 * half, 0.0], text, colour: Colour::Ink };
             let c = self.material.speed();
-            scene.labels.push(label(0.5 * self.step, format!("c = {c:.3}")));
-            scene.labels.push(label(0.5 * (self.step + length), format!("c = {:.3}", c / self.ratio.sqrt())));
+            scene.labels.push(label(0.5 * self.step, format!("mass {}, c = {c:.3}", self.material.mass)));
+            let (mass, slow) = (self.material.mass * self.ratio, c / self.ratio.sqrt());
+            scene.labels.push(label(0.5 * (self.step + length), format!("mass {mass}, c = {slow:.3}")));
         }
         let scale = REACH * length / self.reference();
         match design.polarisation {
