@@ -46,10 +46,10 @@ impl Wave {
         if let (Some(sample), true) = (self.samples.last(), self.ratio != 1.0) {
             let energy = sample.kinetic + sample.elastic;
             if energy > 0.0 {
-                parts.push(format!("{:.1} % of the energy left of the step", 100.0 * sample.left / energy));
+                parts.push(format!("energy left of the step {:.1} %", 100.0 * sample.left / energy));
             }
             let (r, t) = theory::step_amplitudes(self.ratio);
-            parts.push(format!("echo {r:+.3}, onwards {t:+.3}"));
+            parts.push(format!("echo {r:+.2}, onwards {t:+.2}"));
         } else if let Start::Mode(j) = self.start {
             let phase = theory::Modes::of(self.chain.design()).map_or(0.0, |modes| modes.phase(j));
             parts.push(format!("mode {j}, omega = {:.5}", theory::dispersion(self.material.omega_0(), phase)));
@@ -60,7 +60,7 @@ impl Wave {
             let wavelength = std::f64::consts::TAU * self.material.speed() / angular_frequency;
             parts.push(format!("wavelength c/f = {wavelength:.2}"));
         }
-        parts.push(format!("heights × {scale:.1}"));
+        parts.push(format!("heights × {scale:.0}"));
         if self.dalembert.is_some() {
             parts.push("thin line: string".into());
         }
