@@ -315,7 +315,11 @@ impl Simulation for ThreeBody {
 
     fn moments(&self) -> Vec<f64> {
         let end = self.end();
-        if self.start.preset == "pythagorean" { vec![0.0, 0.22 * end, 0.6 * end] } else { vec![0.0, 0.15 * end, 0.5 * end] }
+        if self.start.preset == "pythagorean" {
+            vec![0.0, 0.22 * end, 0.6 * end, 0.95 * end]
+        } else {
+            vec![0.0, 0.15 * end, 0.5 * end]
+        }
     }
 }
 

@@ -5,11 +5,10 @@ use corpuscle_scene::{Body, Camera, Colour, Colouring, Scene, TrailPoint};
 use super::ThreeBody;
 use super::fate::Fate;
 
-/// Samples drawn behind a star and behind a grain.
-const TRAIL_OF_STAR: usize = 1000;
-const TRAIL_OF_GRAIN: usize = 120;
+/// Samples drawn behind a grain.
+const TRAIL_OF_GRAIN: usize = 180;
 /// The picture grows with the stars' reach up to this many times its first width.
-const WIDEST: f64 = 2.0;
+const WIDEST: f64 = 3.0;
 
 impl ThreeBody {
     pub(super) fn draw_into(&self, scene: &mut Scene) {
@@ -40,9 +39,9 @@ impl ThreeBody {
         // Dust first: the stars' trails lie on top.
         for i in (3..visible).chain(0..3) {
             let star = i < 3;
-            let (capacity, colour) = if star { (TRAIL_OF_STAR, Colour::Accent(i as u8)) } else { (TRAIL_OF_GRAIN, Colour::Faint) };
+            let (capacity, colour) = if star { (start.trail, Colour::Accent(i as u8)) } else { (TRAIL_OF_GRAIN, Colour::Faint) };
             let trail = scene.trail(i as u32, capacity, colour);
-            trail.width = if star { 2.0 } else { 0.8 };
+            trail.width = if star { 2.0 } else { 1.0 };
             let seen = trail.points().back().map_or(f64::NEG_INFINITY, |point| point.time);
             let first = self.path.partition_point(|frame| frame.time <= seen).max(self.path.len().saturating_sub(capacity));
             for frame in self.path.range(first..) {
@@ -53,11 +52,8 @@ impl ThreeBody {
 
     fn caption(&self) -> String {
         let run = &self.runs[0];
-        let mut parts = vec![
-            format!("t = {:.2}", self.time),
-            run.engine.integrator().name().to_owned(),
-            format!("energy error {:.0e}", run.relative_energy_error()),
-        ];
+        let mut parts =
+            vec![run.engine.integrator().name().to_owned(), format!("energy error {:.0e}", run.relative_energy_error())];
         if self.start.preset == "pythagorean" {
             parts.push(Fate::of(run.engine.particles(), self.start.constant).describe(self.start.masses()));
         } else if let Some(apart) = self.parting.neighbours.last().filter(|_| self.start.grains > 1) {

@@ -31,6 +31,8 @@ pub(crate) struct Start {
     pub(crate) duration: f64,
     /// Time after which all stars should be back at their start, where there is one.
     pub(crate) period: Option<f64>,
+    /// Number of samples drawn behind a star: less than a third of a closed orbit that three stars share.
+    pub(crate) trail: usize,
     /// Half the width of the picture.
     pub(crate) view: f64,
 }
@@ -82,7 +84,7 @@ impl Start {
         let period = PERIOD_OF_EIGHT / pace;
         let closes = masses == [mean; 3] && softening == 0.0;
         let mut start = Self::with_stars("figure-eight", masses, stars, constant, softening);
-        (start.interval, start.duration, start.view) = (period / 320.0, 3.0 * period, 1.5);
+        (start.interval, start.duration, start.view, start.trail) = (period / 320.0, 3.0 * period, 1.25, 100);
         start.period = closes.then_some(period);
         start
     }
@@ -99,7 +101,7 @@ impl Start {
         });
         let period = std::f64::consts::TAU / rate;
         let mut start = Self::with_stars("lagrange", masses, stars, constant, softening);
-        (start.interval, start.duration, start.view) = (period / 320.0, 10.0 * period, 1.5);
+        (start.interval, start.duration, start.view, start.trail) = (period / 320.0, 10.0 * period, 1.25, 100);
         start.period = Some(period);
         start
     }
@@ -109,7 +111,7 @@ impl Start {
         let stars = [[1.0, 3.0], [-2.0, -1.0], [1.0, -1.0]].map(|r| (Vector(r), Vector::ZERO));
         let mut start = Self::with_stars("pythagorean", masses, stars, constant, softening);
         let unit = (12.0 / (constant * masses.iter().sum::<f64>())).sqrt();
-        (start.interval, start.duration, start.view) = (0.01 * unit, 75.0 * unit, 4.5);
+        (start.interval, start.duration, start.view) = (0.01 * unit, 65.0 * unit, 4.5);
         start
     }
 
@@ -135,7 +137,7 @@ impl Start {
         }
         let mut start = Self::with_stars("paper", masses, stars, constant, softening);
         let unit = (1.25 / (constant * total)).sqrt();
-        (start.interval, start.duration, start.view) = (0.02 * unit, 60.0 * unit, 4.0);
+        (start.interval, start.duration, start.view) = (0.02 * unit, 60.0 * unit, 3.4);
         start
     }
 
@@ -154,6 +156,7 @@ impl Start {
             interval: 0.01,
             duration: 1.0,
             period: None,
+            trail: 1000,
             view: 1.0,
         }
     }
