@@ -1,6 +1,6 @@
 //! The three-body experiment against its theory.
 
-#![allow(clippy::unwrap_used)] // helpers of tests are tests too
+#![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests are tests too
 
 use corpuscle_core::Invalid;
 use corpuscle_experiments::{Settings, Simulation, find};
