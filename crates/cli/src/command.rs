@@ -14,7 +14,7 @@ use corpuscle_io::{Refusal, Registry, Scenario};
 pub(crate) struct Subject {
     /// Name of an experiment, or a scenario file.
     #[arg(value_name = "NAME|FILE")]
-    subject: String,
+    name: String,
     /// Set a parameter; may be given several times.
     #[arg(long, value_name = "KEY=VALUE", value_parser = assignment, allow_hyphen_values = true)]
     set: Vec<(String, String)>,
@@ -26,7 +26,7 @@ pub(crate) struct Subject {
 impl Subject {
     /// The scenario these arguments describe.
     fn scenario(&self, registry: Registry) -> Result<Scenario, Refusal> {
-        let mut scenario = Scenario::find(registry, &self.subject)?;
+        let mut scenario = Scenario::find(registry, &self.name)?;
         for (key, value) in &self.set {
             scenario.set(key, value)?;
         }

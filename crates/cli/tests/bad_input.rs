@@ -1,12 +1,14 @@
 //! Every kind of input that cannot be used ends with exit code 2 and one line that says what is wrong; nothing is written.
 
+#![allow(clippy::unwrap_used)] // in the helpers too: a test that cannot be set up has failed
+
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
 /// The command, in a folder of its own.
 fn corpuscle(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_corpuscle")).args(arguments).current_dir(folder).output().unwrap()
+    Command::new(env!("CARGO_BIN_EXE_corpuscle")).args(arguments).current_dir(folder).output().expect("the command starts")
 }
 
 /// Runs with these arguments, after writing `file` as scenario.toml, and asserts refusal: exit code 2, one line on standard

@@ -11,13 +11,14 @@ const GAS: &str = "engine = \"event\"\nduration = 20.0\nobserve = [\"temperature
                    upper = [20.0, 20.0]\nfaces = \"walls\"\n[[species]]\ncount = 60\nradius = 0.3\n";
 
 fn corpuscle(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_corpuscle")).args(arguments).current_dir(folder).output().unwrap()
+    Command::new(env!("CARGO_BIN_EXE_corpuscle")).args(arguments).current_dir(folder).output().expect("the command starts")
 }
 
 /// The summary without what depends on the clock.
 fn summary(folder: &Path) -> Value {
-    let mut summary: Value = serde_json::from_slice(&fs::read(folder.join("summary.json")).unwrap()).unwrap();
-    let engine = summary["engine"].as_object_mut().unwrap();
+    let bytes = fs::read(folder.join("summary.json")).expect("there is a summary");
+    let mut summary: Value = serde_json::from_slice(&bytes).expect("the summary is JSON");
+    let engine = summary["engine"].as_object_mut().expect("it has an engine");
     assert!(engine.remove("wall_s").is_some() && engine.remove("rate").is_some());
     summary
 }

@@ -266,8 +266,8 @@ impl Scenario {
     /// Where the value of a key came from, or if it was not given, the nearest table around it: `species[0].radius`, then
     /// `species[0]`, then the file.
     fn origin(&self, key: &str) -> Origin {
-        let around = std::iter::successors(Some(key), |key| key.rsplit_once('.').map(|(table, _)| table));
-        around.filter_map(|key| self.origins.get(key)).next().unwrap_or(&self.file).clone()
+        let mut around = std::iter::successors(Some(key), |key| key.rsplit_once('.').map(|(table, _)| table));
+        around.find_map(|key| self.origins.get(key)).unwrap_or(&self.file).clone()
     }
 
     /// The scenario as a file that gives the same run again, bit for bit: numbers are written with as many digits as

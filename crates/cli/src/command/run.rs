@@ -150,7 +150,10 @@ fn save(record: &Record, folder: &Folder) -> Result<(), WriteError> {
         folder.write(&format!("{}.csv", file_stem(&chart.name)), &csv::chart(chart))?;
     }
     for table in &record.tables {
-        folder.write(&format!("{}.csv", file_stem(&table.name)), &csv::table(table))?;
+        // A table may have the name of the chart it goes with.
+        let taken = record.charts.iter().any(|chart| file_stem(&chart.name) == file_stem(&table.name));
+        let more = if taken { "-table" } else { "" };
+        folder.write(&format!("{}{more}.csv", file_stem(&table.name)), &csv::table(table))?;
     }
     for (index, Picture { png, .. }) in record.pictures.iter().enumerate() {
         folder.write(&format!("pictures/{:02}.png", index + 1), png)?;
@@ -189,7 +192,7 @@ fn checks(checks: &[Check]) -> String {
                 Verdict::Agreement => plain(&rounded(check.measured, check.standard_error)),
                 Verdict::AtMost | Verdict::AtLeast => significant(check.measured, 3),
             } + &unit,
-            format!("{sign}{}{unit}", significant(check.expected, 6)),
+            format!("{sign}{}{unit}", significant(check.expected, if check.verdict == Verdict::Agreement { 6 } else { 3 })),
             check.z.map(|z| format!("{z:+.2}")).unwrap_or_default(),
         ]
     });
