@@ -9,17 +9,27 @@ const WALL: f32 = 2.5;
 /// Width of a periodic face, which is no wall: faint and thin.
 const FACE: f32 = 1.0;
 
+/// Smallest radius of a particle of a gas on the screen, in points: thin gases need large boxes.
+const SPECK: f32 = 2.2;
+
 /// Hands the particles of an event-driven engine over untouched, each with its own clock; the renderer moves them to the
-/// scene's time. `shade(i)` is what the colouring reads of particle `i`.
-pub(crate) fn add_event_driven<const D: usize>(scene: &mut Scene, engine: &EventDriven<D>, shade: impl Fn(usize) -> f64) {
-    scene.time = engine.time();
+/// scene's time. The scene counts time from `start` on the engine's clock. `shade(i)` is what the colouring reads of
+/// particle `i`.
+pub(crate) fn add_event_driven<const D: usize>(
+    scene: &mut Scene,
+    engine: &EventDriven<D>,
+    start: f64,
+    shade: impl Fn(usize) -> f64,
+) {
+    scene.time = engine.time() - start;
+    scene.least_radius = SPECK;
     scene.field = engine.rules().field.to_three();
     scene.bodies.extend((0..engine.particle_count()).map(|i| {
         let lazy = engine.lazy(i);
         Body {
             position: lazy.position.to_three(),
             velocity: lazy.velocity.to_three(),
-            time: lazy.time,
+            time: lazy.time - start,
             radius: engine.radius(i),
             shade: shade(i),
         }

@@ -99,7 +99,7 @@ fn checks(checks: &[Check]) -> String {
     let mut out = String::from(
         "<section id=\"checks\">\n<h2>Measured beside theory</h2>\n<div class=\"scroll\"><table>\n<thead><tr><th></th><th>Quantity</th>\
          <th class=\"number\">Measured ± standard error</th><th class=\"number\">Expected</th><th class=\"number\">z</th>\
-         <th></th><th>Source of the expectation</th></tr></thead>\n<tbody>\n",
+         <th></th></tr></thead>\n<tbody>\n",
     );
     for check in checks {
         let (class, mark) = if check.passed { ("good", "✓") } else { ("bad", "✗") };
@@ -116,15 +116,14 @@ fn checks(checks: &[Check]) -> String {
         let z = check.z.map(|z| format!("{z:+.2}").replace('-', "−")).unwrap_or_default();
         let _ = writeln!(
             out,
-            "<tr class=\"{class}\"><td class=\"mark\" aria-label=\"{}\">{mark}</td><td class=\"quantity\">{}</td>\
-             <td class=\"number\">{}</td><td class=\"number\">{}</td><td class=\"number\">{z}</td><td>{}</td>\
-             <td class=\"reference\">{}</td></tr>",
+            "<tr class=\"{class}\"><td class=\"mark\" aria-label=\"{}\">{mark}</td><td class=\"quantity\">{}<div class=\"reference\">{}</div></td>\
+             <td class=\"number\">{}</td><td class=\"number\">{}</td><td class=\"number\">{z}</td><td>{}</td></tr>",
             if check.passed { "passed" } else { "failed" },
             escape(&check.quantity),
+            escape(&check.reference),
             escape(&measured),
             escape(&expected),
-            check.z.map(|z| gauge(z, check.passed)).unwrap_or_default(),
-            escape(&check.reference)
+            check.z.map(|z| gauge(z, check.passed)).unwrap_or_default()
         );
     }
     out + "</tbody></table></div>\n<p class=\"note\">z is the difference between measurement and expectation in standard errors, drawn from −4 to 4. Of \

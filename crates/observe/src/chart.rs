@@ -107,7 +107,8 @@ pub struct Chart {
     pub x: Axis,
     /// Ordinate.
     pub y: Axis,
-    /// The series, in drawing order.
+    /// The series, in drawing order. Several theories, each next to its own measurement in the list (theory, points, theory,
+    /// points, ...), share its colour; in any other order theory is drawn in ink.
     pub series: Vec<Series>,
     /// One sentence: what to look at.
     pub note: String,

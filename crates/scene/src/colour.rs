@@ -45,7 +45,7 @@ pub enum Colouring {
 
 impl Default for Colouring {
     fn default() -> Self {
-        Self::Uniform(Colour::Accent(4))
+        Self::Uniform(Colour::Accent(0))
     }
 }
 
@@ -105,9 +105,18 @@ impl Palette {
             (Colour::Faint, Self::Light) => bytes([140, 148, 160], 0.7),
             // Black disappears on a dark ground: white takes its place.
             (Colour::Accent(index), Self::Dark) if index % 8 == 7 => bytes([245, 245, 245], 1.0),
-            (Colour::Accent(index), _) => bytes(okabe_ito(usize::from(index)), 1.0),
-            (Colour::Tint(index), _) => bytes(okabe_ito(usize::from(index)), 0.10),
+            (Colour::Accent(index), _) => bytes(self.accent(index), 1.0),
+            (Colour::Tint(index), _) => bytes(self.accent(index), 0.10),
         }
+    }
+
+    /// The two blues change places on a dark ground, where the deeper one is hard to see.
+    fn accent(self, index: u8) -> [u8; 3] {
+        okabe_ito(match (self, index % 8) {
+            (Self::Dark, 0) => 4,
+            (Self::Dark, 4) => 0,
+            (_, index) => usize::from(index),
+        })
     }
 
     /// Red, green, blue of the ground, each from 0 to 1.

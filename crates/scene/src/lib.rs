@@ -88,6 +88,9 @@ pub struct Scene {
     pub labels: Vec<Label>,
     /// How bodies get their colour, and the legend.
     pub colouring: Colouring,
+    /// Smallest radius drawn, in points of the screen: bodies of a thin gas in a large box would otherwise be invisible. Zero for
+    /// true size, faint below a pixel.
+    pub least_radius: f32,
 }
 
 impl Scene {

@@ -404,19 +404,18 @@ impl<const D: usize> Simulation for Brownian<D> {
     fn draw(&self, scene: &mut Scene) {
         scene.clear();
         let bath = &self.baths[0];
-        drawing::add_event_driven(scene, &bath.engine, |i| f64::from(u8::from(i == TRACER)));
+        drawing::add_event_driven(scene, &bath.engine, bath.started(), |i| f64::from(u8::from(i == TRACER)));
         scene.colouring = Colouring::Species(vec!["bath".into(), "heavy particle".into()]);
+        scene.least_radius = 1.5; // the bath is to look small beside the heavy particle
         let trail = scene.trail(0, TRAIL, Colour::Accent(1));
         trail.width = 2.0;
         let boundary = bath.engine.boundary();
-        // The engine's clock, which the bodies run by, was started before the measurement.
-        let clock = bath.engine.time() - bath.time();
-        let drawn = trail.points().back().map_or(-1.0, |point| point.time - clock);
+        let drawn = trail.points().back().map_or(-1.0, |point| point.time);
         let mut before = None;
         for (&path, &time) in bath.path.iter().zip(&self.times) {
             let place = boundary.wrap(path);
             if time > drawn {
-                let point = TrailPoint { position: place.to_three(), time: clock + time };
+                let point = TrailPoint { position: place.to_three(), time };
                 // Through a periodic face: the wrapped step is not the real one.
                 let through = before.is_some_and(|(last_path, last_place)| {
                     ((place - last_place) - (path - last_path)).norm() > 0.5 * self.set.side
@@ -428,8 +427,7 @@ impl<const D: usize> Simulation for Brownian<D> {
         let away = bath.path.last().zip(bath.path.first()).map_or(0.0, |(now, start)| (*now - *start).norm());
         scene.title = EXPERIMENT.title.into();
         scene.caption = format!(
-            "t = {:.0}   distance from the start {away:.1} (theory √⟨r²⟩ = {:.1})   {} kicks",
-            bath.time(),
+            "distance from the start {away:.1} (theory √⟨r²⟩ = {:.1})   {} kicks",
             self.set.displacement(self.elapsed()).sqrt(),
             bath.kicks.count
         );

@@ -458,10 +458,11 @@ impl<const D: usize> Simulation for Entropy<D> {
     fn draw(&self, scene: &mut Scene) {
         scene.clear();
         let room = &self.shown;
-        drawing::add_event_driven(scene, &room.engine, |i| f64::from(room.species[i]));
-        scene.time = room.engine.time();
-        let names: &[&str] = if room.process == Process::Mixing { &["started left", "started right"] } else { &["gas"] };
-        scene.colouring = Colouring::Species(names.iter().map(ToString::to_string).collect());
+        drawing::add_event_driven(scene, &room.engine, room.opened(), |i| f64::from(room.species[i]));
+        scene.colouring = match room.process {
+            Process::Expansion => Colouring::Uniform(Colour::Accent(0)),
+            Process::Mixing => Colouring::Species(vec!["started left".into(), "started right".into()]),
+        };
         let count = self.set.particles;
         let middle = 0.5 * self.set.boundary.upper[0];
         let left = (0..count).filter(|&i| room.engine.position(i)[0] < middle).count();
@@ -475,8 +476,7 @@ impl<const D: usize> Simulation for Entropy<D> {
         let sample = room.samples.last().map_or(0.0, |sample| sample.entropy - room.samples[0].entropy);
         scene.title = EXPERIMENT.title.into();
         scene.caption = format!(
-            "t = {:.1}   {left} left, {} right   S − S₀ = {sample:.1} k_B (equilibrium {:.1})",
-            room.time(),
+            "{left} left, {} right   S − S₀ = {sample:.1} k_B (equilibrium {:.1})",
             count - left,
             self.set.expected_rise(room.process)
         );

@@ -297,7 +297,7 @@ impl<const D: usize> Simulation for Laboratory<D> {
         let (count, temperature, volume) = (state.count, state.temperature, state.volume::<D>());
         scene.caption = format!("N = {count}, kT = {temperature}, V_acc = {volume:.0}: {reading}");
         scene.colouring = Colouring::Speed { most: 3.0 * state.thermal_speed(), unit: String::new() };
-        add_event_driven(scene, &self.base.replicas[0].engine, |_| 0.0);
+        add_event_driven(scene, &self.base.replicas[0].engine, 0.0, |_| 0.0);
     }
 
     fn charts(&self) -> Vec<Chart> {

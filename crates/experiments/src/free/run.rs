@@ -299,7 +299,7 @@ impl<const D: usize> Simulation for Free<D> {
         match &self.engine {
             AnyEngine::Event(engine) => {
                 let species = &self.start_particles.species;
-                drawing::add_event_driven(scene, engine, |i| f64::from(species[i]));
+                drawing::add_event_driven(scene, engine, 0.0, |i| f64::from(species[i]));
             }
             AnyEngine::Time(engine) => {
                 let particles = engine.particles();

@@ -56,8 +56,8 @@ pub(super) fn svg(chart: &Chart) -> String {
 /// How the series are told apart, as class names.
 fn looks(series: &[Series]) -> Vec<String> {
     let is_theory = |series: &&Series| series.style == Style::Theory;
-    let theories = series.iter().filter(is_theory).count();
-    let paired = theories > 1 && theories == series.len() - theories;
+    // Alternating, theory and measurement belong together in pairs.
+    let paired = series.len() > 2 && series.chunks(2).all(|pair| pair.iter().filter(is_theory).count() == 1 && pair.len() == 2);
     let (mut theory, mut measured) = (0, 0);
     let mut look = |series: &Series| {
         if series.style == Style::Theory {

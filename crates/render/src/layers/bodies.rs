@@ -79,6 +79,7 @@ impl Bodies {
             &self.disc
         };
         program.set("u_field", scene.field.map(|g| g as f32));
+        program.set("u_least_radius", scene.least_radius);
         colour(program, &scene.colouring, space.palette);
         space.enter(program);
         self.buffer.draw();

@@ -31,9 +31,13 @@ vec3 colour_now() {
     return mix(u_map[below], u_map[below + 1], knot - float(below));
 }
 
-// Bodies smaller than a pixel are drawn at this radius and paler instead, so that a crowd keeps its mean brightness;
-// one without extent is a mark and stays opaque. Radius and opacity.
+// Radius drawn, in pixels, and opacity. The scene may ask for a smallest radius. Where it does not, bodies smaller than a
+// pixel are drawn as large as one and paler, so that a crowd keeps its mean brightness; one without extent is a mark and
+// stays opaque.
+uniform float u_least_radius;       // points
+
 vec2 visible_size(float radius) {
+    radius = max(radius, u_least_radius * u_point);
     float least = 0.75 * u_point;
     float part = radius / least;
     return vec2(max(radius, least), radius > 0.0 ? clamp(part * part, 0.2, 1.0) : 1.0);

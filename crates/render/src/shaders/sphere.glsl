@@ -11,7 +11,7 @@ void main() {
     vec3 centre = eye_from_centre(place_now());
     float distance = length(centre);
     float pixel = distance / u_focal;
-    float radius = max(a_form.x, 0.75 * u_point * pixel);
+    float radius = max(a_form.x, max(u_least_radius, 0.75) * u_point * pixel);
     v_colour = colour_now();
     v_sphere = vec4(centre, radius);
     if (distance <= radius * 1.001 || centre.z >= 0.0) {

@@ -90,6 +90,11 @@ impl<const D: usize> Bath<D> {
         Ok(bath)
     }
 
+    /// Time on the engine's clock at which the measurement started.
+    pub(super) fn started(&self) -> f64 {
+        self.started
+    }
+
     /// Time since the measurement started.
     pub(super) fn time(&self) -> f64 {
         self.engine.time() - self.started

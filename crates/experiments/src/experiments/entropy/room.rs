@@ -85,9 +85,9 @@ impl<const D: usize> Room<D> {
         Ok(room)
     }
 
-    /// Time since the partition opened.
-    pub(super) fn time(&self) -> f64 {
-        self.engine.time() - self.opened
+    /// Time on the engine's clock at which the partition opened.
+    pub(super) fn opened(&self) -> f64 {
+        self.opened
     }
 
     /// Advances to `time` after the opening.

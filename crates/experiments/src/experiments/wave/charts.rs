@@ -109,8 +109,8 @@ impl Wave {
                 Axis::linear("amplitude over the incident", ""),
             )
             .with(theory("reflected, (Z1 - Z2)/(Z1 + Z2)", |(r, _)| r))
-            .with(theory("transmitted, 2 Z1/(Z1 + Z2)", |(_, t)| t))
             .with(Series::new("reflected, measured", Style::Points, steps.iter().map(|s| (s.0, s.1))))
+            .with(theory("transmitted, 2 Z1/(Z1 + Z2)", |(_, t)| t))
             .with(Series::new("transmitted, measured", Style::Points, steps.iter().map(|s| (s.0, s.2))))
             .noting("A denser part turns the echo upside down; a lighter one doubles at most what goes on."),
         )
