@@ -470,7 +470,7 @@ impl<const D: usize> Simulation for Entropy<D> {
             let height = self.set.boundary.upper[1];
             scene.regions.push(Region { lower: [0.0, 0.0], upper: [middle, height], colour: Colour::Tint(0) });
             for (x, number) in [(0.5 * middle, left), (1.5 * middle, count - left)] {
-                scene.labels.push(Label { at: [x, -0.035 * height, 0.0], text: number.to_string(), colour: Colour::Ink });
+                scene.labels.push(Label { at: [x, 0.045 * height, 0.0], text: number.to_string(), colour: Colour::Ink });
             }
         }
         let sample = room.samples.last().map_or(0.0, |sample| sample.entropy - room.samples[0].entropy);
