@@ -4,6 +4,7 @@ pub(crate) mod check;
 pub(crate) mod list;
 pub(crate) mod record;
 pub(crate) mod run;
+mod target;
 pub(crate) mod view;
 
 use clap::Args;
@@ -19,7 +20,7 @@ pub(crate) struct Subject {
     #[arg(long, value_name = "KEY=VALUE", value_parser = assignment, allow_hyphen_values = true)]
     set: Vec<(String, String)>,
     /// Seed of all random numbers [default: the file's, or 1].
-    #[arg(long)]
+    #[arg(long, value_parser = seed, allow_hyphen_values = true)]
     seed: Option<u64>,
 }
 
@@ -42,10 +43,19 @@ fn assignment(text: &str) -> Result<(String, String), String> {
     Ok((key.trim().into(), value.trim().into()))
 }
 
+fn seed(text: &str) -> Result<u64, String> {
+    text.trim().parse().map_err(|_| format!("expected a whole number from 0 to {}", u64::MAX))
+}
+
 /// Reads a physical time: a number, with or without an `s`.
 fn physical_time(text: &str) -> Result<f64, String> {
-    let number = text.trim().trim_end_matches('s').trim_end();
-    number.parse().ok().filter(|time: &f64| time.is_finite() && *time >= 0.0).ok_or_else(|| "expected a time, as in 2.5s".into())
+    let number = text.trim();
+    let number = number.strip_suffix('s').unwrap_or(number).trim_end();
+    number
+        .parse()
+        .ok()
+        .filter(|time: &f64| time.is_finite() && *time >= 0.0)
+        .ok_or_else(|| "expected a time from 0, as in 2.5s".into())
 }
 
 /// Reads a number above zero.

@@ -11,6 +11,7 @@ mod progress;
 mod signal;
 mod table;
 mod trouble;
+mod usage;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
@@ -19,13 +20,14 @@ use clap::{Parser, Subcommand};
 use corpuscle_io::Registry;
 
 use command::{check, list, record, run, view};
+use trouble::Trouble;
 
 /// A physics laboratory: exact hard-particle dynamics, soft particles, gravity and waves, measured beside theory.
 #[derive(Parser)]
 #[command(name = "corpuscle", version, propagate_version = true, max_term_width = 110)]
 struct Command {
     #[command(subcommand)]
-    task: Task,
+    task: Option<Task>,
 }
 
 #[derive(Subcommand)]
@@ -46,13 +48,14 @@ enum Task {
 ///
 /// A panic, which is always a fault of the program, ends with exit code 1 after its message.
 pub fn main(registry: Registry<'_>) -> ExitCode {
-    let command = Command::parse();
-    let outcome = catch_unwind(AssertUnwindSafe(|| match command.task {
-        Task::List(arguments) => list::list(&arguments, registry),
-        Task::Run(arguments) => run::run(&arguments, registry),
-        Task::View(arguments) => view::view(&arguments, registry),
-        Task::Record(arguments) => record::record(&arguments, registry),
-        Task::Check(arguments) => check::check(&arguments, registry),
+    let outcome = catch_unwind(AssertUnwindSafe(|| match Command::try_parse() {
+        Ok(command) => command.obey(registry),
+        // What was asked for, help or version, goes to standard output.
+        Err(error) if !error.use_stderr() => {
+            console::unless_gone(error.print())?;
+            Ok(ExitCode::SUCCESS)
+        }
+        Err(error) => Err(usage::refusal(&error).into()),
     }));
     match outcome {
         Ok(Ok(code)) => code,
@@ -63,6 +66,22 @@ pub fn main(registry: Registry<'_>) -> ExitCode {
         Err(_) => {
             console::complain("this is a fault of the program: please report it with the lines above");
             ExitCode::from(1)
+        }
+    }
+}
+
+impl Command {
+    fn obey(&self, registry: Registry) -> Result<ExitCode, Trouble> {
+        match &self.task {
+            None => {
+                console::print(&usage::welcome(registry))?;
+                Ok(ExitCode::SUCCESS)
+            }
+            Some(Task::List(arguments)) => list::list(arguments, registry),
+            Some(Task::Run(arguments)) => run::run(arguments, registry),
+            Some(Task::View(arguments)) => view::view(arguments, registry),
+            Some(Task::Record(arguments)) => record::record(arguments, registry),
+            Some(Task::Check(arguments)) => check::check(arguments, registry),
         }
     }
 }

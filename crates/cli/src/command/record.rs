@@ -4,11 +4,12 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
-use corpuscle_core::Invalid;
+use corpuscle_experiments::Simulation;
 use corpuscle_io::number::significant;
-use corpuscle_io::{Origin, Refusal, Registry};
-use corpuscle_render::Clip;
+use corpuscle_io::{Refusal, Registry, Scenario};
+use corpuscle_render::{Clip, RenderError};
 
+use super::target::{extension, refuse, vacant};
 use super::{Subject, physical_time, positive};
 use crate::console;
 use crate::picture::{Artist, PaletteName, Size};
@@ -18,6 +19,8 @@ use crate::trouble::Trouble;
 
 /// Seconds that a clip lasts unless told otherwise.
 const SECONDS: f64 = 12.0;
+/// Longest clip: almost an hour at the usual rate, and numbered pictures have five digits.
+const MOST: f64 = 100_000.0;
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -26,23 +29,23 @@ pub(crate) struct Arguments {
     /// The clip: a name that ends in .mp4 or .gif, or a folder for numbered pictures.
     #[arg(long, value_name = "FILE|DIR")]
     out: PathBuf,
-    /// Overwrite a file that is there.
+    /// Overwrite a file that is there. A folder is always to be new or empty.
     #[arg(long)]
     force: bool,
     /// Width and height in pixels.
-    #[arg(long, default_value = "1280x720")]
+    #[arg(long, allow_hyphen_values = true, default_value = "1280x720")]
     size: Size,
     /// Pictures in a second of the clip.
-    #[arg(long, default_value_t = 30.0, value_parser = positive)]
+    #[arg(long, allow_hyphen_values = true, default_value_t = 30.0, value_parser = positive)]
     fps: f64,
     /// Physical time shown in a second of the clip [default: the whole in 12 seconds].
-    #[arg(long, value_parser = positive)]
+    #[arg(long, allow_hyphen_values = true, value_parser = positive)]
     speed: Option<f64>,
     /// Physical time of the first picture.
-    #[arg(long, default_value = "0", value_parser = physical_time)]
+    #[arg(long, allow_hyphen_values = true, default_value = "0", value_parser = physical_time)]
     from: f64,
     /// Physical time of the last picture [default: the experiment's end].
-    #[arg(long, value_parser = physical_time)]
+    #[arg(long, allow_hyphen_values = true, value_parser = physical_time)]
     to: Option<f64>,
     /// Ground and ink.
     #[arg(long, value_enum, default_value_t)]
@@ -51,51 +54,100 @@ pub(crate) struct Arguments {
 
 pub(crate) fn record(arguments: &Arguments, registry: Registry) -> Result<ExitCode, Trouble> {
     let scenario = arguments.subject.scenario(registry)?;
+    check_target(arguments)?;
     let mut simulation = scenario.start()?;
-    let from = arguments.from.max(simulation.time());
-    let to = arguments.to.or(scenario.duration).unwrap_or_else(|| simulation.end());
-    let refuse = |key: &str, value: String, expected: &str| {
-        Trouble::from(Refusal::new(Origin::CommandLine, Invalid::new(key, value, expected)))
-    };
-    if to <= from {
-        return Err(refuse("to", to.to_string(), &format!("a time after the first picture's, {from}")));
-    }
-    if arguments.out.is_file() && !arguments.force {
-        return Err(refuse("out", arguments.out.display().to_string(), "a new file, or --force to overwrite this one"));
-    }
+    let plan = Plan::new(arguments, &scenario, simulation.as_ref())?;
     let Size { width, height } = arguments.size;
     let mut artist = Artist::new(arguments.size, arguments.palette.into())?;
-    let mut clip = Clip::create(&arguments.out, width, height, arguments.fps)?;
-    let step = arguments.speed.unwrap_or((to - from) / SECONDS) / arguments.fps;
-    let count = ((to - from) / step).floor() as u64 + 1;
+    let mut clip = Clip::create(&arguments.out, width, height, arguments.fps).map_err(|error| arguments.named(error))?;
     console::print(&format!(
-        "{} ({}), seed {}: {count} pictures from t = {} to {}\n",
+        "{} ({}), seed {}: {} pictures from t = {} to {}\n",
         scenario.title(),
         scenario.name(),
         scenario.settings.seed,
-        significant(from, 5),
-        significant(to, 5)
+        plan.count,
+        significant(plan.from, 5),
+        significant(plan.to, 5)
     ))?;
-    let mut progress = Progress::new(simulation.as_ref(), to, false, Stop::listen());
+    let mut progress = Progress::new(simulation.as_ref(), plan.to, false, Stop::listen());
     // The way to the first picture is looked at as often as the rest, so that trails reach back.
     let mut before = simulation.time();
-    while before < from && artist.look(simulation.as_ref()) {
-        before = (before + step).min(from);
+    while before < plan.from && artist.look(simulation.as_ref()) {
+        before = (before + plan.step).min(plan.from);
         if !progress.advance(simulation.as_mut(), before)? {
             return Err(Trouble::Interrupted("stopped before the first picture; nothing was written".into()));
         }
     }
-    for frame in 0..count {
-        let arrived = progress.advance(simulation.as_mut(), from + frame as f64 * step)?;
-        clip.frame(&artist.draw(simulation.as_ref())?)?;
+    for frame in 0..plan.count {
+        let arrived = progress.advance(simulation.as_mut(), plan.time(frame))?;
+        clip.frame(&artist.draw(simulation.as_ref())?).map_err(|error| arguments.named(error))?;
         if !arrived || progress.stopped() {
-            clip.finish()?;
+            clip.finish().map_err(|error| arguments.named(error))?;
             progress.finish();
-            return Err(Trouble::Interrupted(format!("stopped after {} of {count} pictures; the clip holds those", frame + 1)));
+            let (frames, count) = (frame + 1, plan.count);
+            return Err(Trouble::Interrupted(format!("stopped after {frames} of {count} pictures; the clip holds those")));
         }
     }
-    clip.finish()?;
+    clip.finish().map_err(|error| arguments.named(error))?;
     progress.finish();
     console::print(&format!("{}\n", arguments.out.display()))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// A clip can be put where it is wanted, in a format there is.
+fn check_target(arguments: &Arguments) -> Result<(), Refusal> {
+    let (out, fps) = (arguments.out.display(), arguments.fps);
+    match extension(&arguments.out).as_deref() {
+        None | Some("mp4") if fps > 1000.0 => Err(refuse("fps", fps, "at most 1000 pictures in a second")),
+        Some("gif") if fps > 50.0 => Err(refuse("fps", fps, "at most 50 pictures in a second, which is what GIF can show")),
+        None if arguments.out.is_file() => Err(refuse("out", out, "a name that ends in .mp4 or .gif, or a folder; this is a file")),
+        None | Some("mp4" | "gif") => vacant("out", &arguments.out, arguments.force),
+        Some("png") => Err(refuse("out", out, "a name that ends in .mp4 or .gif, or a folder; for one picture, view --screenshot")),
+        Some(_) => Err(refuse("out", out, "a name that ends in .mp4 or .gif, or a folder")),
+    }
+}
+
+impl Arguments {
+    /// The same trouble under the name the user gave: clips are written under another until they are whole.
+    fn named(&self, error: RenderError) -> RenderError {
+        let path = self.out.clone();
+        match error {
+            RenderError::Clip { expected, .. } => RenderError::Clip { path, expected },
+            RenderError::Write { source, .. } => RenderError::Write { path, source },
+            error => error,
+        }
+    }
+}
+
+/// When there is a picture.
+struct Plan {
+    from: f64,
+    to: f64,
+    step: f64,
+    count: u64,
+}
+
+impl Plan {
+    fn new(arguments: &Arguments, scenario: &Scenario, simulation: &dyn Simulation) -> Result<Self, Refusal> {
+        let from = arguments.from.max(simulation.time());
+        let to = arguments.to.or(scenario.duration).unwrap_or_else(|| simulation.end());
+        if to <= from {
+            return Err(refuse("to", to, format!("a time after the first picture's, {from}")));
+        }
+        let step = arguments.speed.unwrap_or((to - from) / SECONDS) / arguments.fps;
+        // A last picture that rounding puts a hair after the end belongs to the clip.
+        let count = ((to - from) / step * (1.0 + f64::EPSILON * 4.0)).floor() + 1.0;
+        if count > MOST {
+            let expected = format!("a speed at which {} to {} takes at most {MOST} pictures", significant(from, 5), significant(to, 5));
+            let speed = arguments.speed.unwrap_or(step * arguments.fps);
+            return Err(refuse("speed", significant(speed, 5), expected));
+        }
+        Ok(Self { from, to, step, count: count as u64 })
+    }
+
+    /// The time of a picture.
+    fn time(&self, frame: u64) -> f64 {
+        // The first picture is at `from` however long the step.
+        if frame == 0 { self.from } else { (self.from + frame as f64 * self.step).min(self.to) }
+    }
 }

@@ -41,7 +41,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
     /// How long to run, as the parameter `duration` where the experiment has one [default: what it needs].
-    #[arg(long, value_name = "T", value_parser = positive)]
+    #[arg(long, value_name = "T", value_parser = positive, allow_hyphen_values = true)]
     duration: Option<f64>,
     /// Leave out the pictures.
     #[arg(long)]

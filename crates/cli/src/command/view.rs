@@ -1,5 +1,6 @@
 //! `corpuscle view`: a window onto a running experiment, or a picture of what it would show.
 
+mod driver;
 mod window;
 
 use std::path::{Path, PathBuf};
@@ -10,6 +11,7 @@ use corpuscle_experiments::Simulation;
 use corpuscle_io::{Registry, write};
 use corpuscle_render::window::Options;
 
+use super::target::{extension, refuse, vacant};
 use super::{Subject, physical_time};
 use crate::console;
 use crate::picture::{Artist, PaletteName, Size};
@@ -27,11 +29,14 @@ pub(crate) struct Arguments {
     /// Save a picture and open no window.
     #[arg(long, value_name = "FILE.png")]
     screenshot: Option<PathBuf>,
+    /// Overwrite a picture that is there.
+    #[arg(long, requires = "screenshot")]
+    force: bool,
     /// Physical time of the picture.
-    #[arg(long, default_value = "0", value_parser = physical_time)]
+    #[arg(long, default_value = "0", value_parser = physical_time, allow_hyphen_values = true)]
     at: f64,
     /// Width and height in pixels.
-    #[arg(long, default_value = "1280x800")]
+    #[arg(long, default_value = "1280x800", allow_hyphen_values = true)]
     size: Size,
     /// Ground and ink.
     #[arg(long, value_enum, default_value_t)]
@@ -42,6 +47,10 @@ pub(crate) fn view(arguments: &Arguments, registry: Registry) -> Result<ExitCode
     let scenario = arguments.subject.scenario(registry)?;
     let (name, seed) = (scenario.name().to_owned(), scenario.settings.seed);
     if let Some(path) = &arguments.screenshot {
+        if extension(path).as_deref() != Some("png") || path.is_dir() {
+            return Err(refuse("screenshot", path.display(), "the name of a file that ends in .png").into());
+        }
+        vacant("screenshot", path, arguments.force)?;
         screenshot(arguments, scenario.start()?.as_mut(), path)?;
         console::print(&format!("{name}, seed {seed}: {}\n", path.display()))?;
     } else {
