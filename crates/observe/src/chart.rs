@@ -21,7 +21,8 @@ pub enum Style {
     Theory,
     /// Measurement: points, with error bars where there are errors.
     Points,
-    /// Measurement in dense succession: a line, with a band of one standard error where there are errors.
+    /// Measurement in dense succession: a line, interrupted where a point is not a number, with a band of one standard error
+    /// where there are errors.
     Line,
     /// Measured counts or densities in bins: `x` are the bins' middles.
     Bars,

@@ -54,7 +54,7 @@ impl Wave {
         chart.noting("The continuous string keeps a pulse's shape for ever; the chain lets its short waves fall behind.")
     }
 
-    /// Rows of the chain, one above the other in time, drawn to and fro so that they are one line.
+    /// Rows of the chain, one above the other in time: one series, interrupted after each row.
     fn space_time_chart(&self) -> Chart {
         let rows = self.kept.len();
         let places = self.places();
@@ -62,12 +62,9 @@ impl Wave {
         let interval = if rows > 1 { self.kept[1].0 - self.kept[0].0 } else { 1.0 };
         let scale = if self.largest > 0.0 { 1.6 * interval / self.largest } else { 0.0 };
         let mut points = vec![];
-        for (row, (time, displacements)) in self.kept.iter().enumerate() {
-            let mut line: Vec<_> = places.iter().zip(displacements).step_by(thin).map(|(&x, u)| (x, time + scale * u)).collect();
-            if row % 2 == 1 {
-                line.reverse();
-            }
-            points.extend(line);
+        for (time, displacements) in &self.kept {
+            points.extend(places.iter().zip(displacements).step_by(thin).map(|(&x, u)| (x, time + scale * u)));
+            points.push((f64::NAN, f64::NAN));
         }
         let mut chart = Chart::new(
             "space-time",
