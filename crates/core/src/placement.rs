@@ -2,6 +2,9 @@
 
 use crate::{Axis, Boundary, Invalid, Particles, Random, Vector};
 
+/// Sites searched, beyond a few a particle, before a region counts as full: point particles would allow any number.
+const MOST_SITES: usize = 1 << 20;
+
 /// Places for `count` spheres of one radius on a square (cubic) lattice that fills the box evenly.
 ///
 /// The lattice is the coarsest with at least `count` sites; which sites stay empty is drawn from `random`.
@@ -25,10 +28,16 @@ pub fn lattice<const D: usize>(
     };
     let most: f64 = (0..D).map(|k| if room[k] < 0.0 { 0.0 } else { sites_along(k, 2.0 * radius.max(1e-9)) }).product();
     let volume: f64 = boundary.volume();
-    let mut spacing = libm::pow(volume / count.max(1) as f64, 1.0 / D as f64);
+    // The volume of a box may overflow where its sides do not.
+    let longest = boundary.extent().0.into_iter().fold(0.0, f64::max);
+    let mut spacing = libm::pow(volume / count.max(1) as f64, 1.0 / D as f64).min(longest);
     while spacing >= 2.0 * radius && spacing > 0.0 {
         let sides: [usize; D] = std::array::from_fn(|k| sites_along(k, spacing).max(0.0) as usize);
-        if sides.iter().try_fold(1usize, |product, &n| product.checked_mul(n)).is_some_and(|sites| sites >= count) {
+        let sites = sides.iter().try_fold(1usize, |product, &n| product.checked_mul(n)).unwrap_or(usize::MAX);
+        if sites > MOST_SITES.saturating_add(count.saturating_mul(4)) {
+            break;
+        }
+        if sites >= count {
             let mut sites = lattice_sites(boundary, room, radius, sides);
             sites.retain(|&site| keep(site));
             if sites.len() >= count {

@@ -2,8 +2,10 @@
 //! beside the theory that applies.
 
 mod build;
+mod charts;
 mod run;
 pub mod spec;
+mod verdict;
 
 pub use spec::System;
 

@@ -45,6 +45,12 @@ impl<const D: usize> WallPressure<D> {
         self.over(std::iter::once((axis, usize::from(upper))))
     }
 
+    /// The pressure over all walls in each time block that is over, in their order.
+    pub fn blocks(&self) -> Vec<f64> {
+        let (force, area) = self.forces((0..D).flat_map(|axis| [(axis, 0), (axis, 1)]));
+        force.into_iter().map(|force| force / area).collect()
+    }
+
     /// Number of hits.
     pub fn hits(&self) -> u64 {
         self.hits
@@ -56,6 +62,12 @@ impl<const D: usize> WallPressure<D> {
     }
 
     fn over(&self, faces: impl Iterator<Item = (usize, usize)>) -> Estimate {
+        let (force, area) = self.forces(faces);
+        blocking(&force).estimate / area
+    }
+
+    /// Force in each block, and the area it acts on.
+    fn forces(&self, faces: impl Iterator<Item = (usize, usize)>) -> (Vec<f64>, f64) {
         let mut force = vec![];
         let mut area = 0.0;
         for (axis, side) in faces.filter(|&(axis, _)| self.areas[axis] > 0.0) {
@@ -64,7 +76,7 @@ impl<const D: usize> WallPressure<D> {
             force.iter_mut().zip(rates).for_each(|(sum, rate)| *sum += rate);
             area += self.areas[axis];
         }
-        blocking(&force).estimate / area
+        (force, area)
     }
 
     fn advance(&mut self, time: f64) {
@@ -119,6 +131,11 @@ impl<const D: usize> VirialPressure<D> {
     /// The pressure with its standard error from blocking.
     pub fn estimate(&self) -> Estimate {
         self.compressibility() * (self.ideal / self.volume)
+    }
+
+    /// The pressure in each time block that is over, in their order.
+    pub fn blocks(&self) -> Vec<f64> {
+        self.virial.rates().into_iter().map(|work| (self.ideal + work / D as f64) / self.volume).collect()
     }
 
     /// The compressibility factor `Z = P V / (N k T)`.

@@ -1,5 +1,6 @@
 //! From the description of a free system to an engine, every number checked on the way.
 
+use corpuscle_core::placement::stop_drift;
 use corpuscle_core::{Axis, Boundary, Engine, Failure, Hole, Invalid, Observer, Particles, Partition, Random, Vector};
 use corpuscle_event::{EventDriven, Rules};
 use corpuscle_time::{
@@ -11,6 +12,8 @@ use crate::gas;
 
 /// Particles a scenario may ask for: an explicit limit instead of a machine without memory.
 const MOST_PARTICLES: usize = 2_000_000;
+/// Steps a scenario may ask for: more would never end.
+const MOST_STEPS: f64 = 1e12;
 
 /// One of the two engines, behind one name.
 pub(super) enum AnyEngine<const D: usize> {
@@ -72,6 +75,8 @@ pub(super) struct Built<const D: usize> {
     pub(super) names: Vec<String>,
     /// Particles whose path is drawn.
     pub(super) trails: Vec<usize>,
+    /// How many coordinates are held.
+    pub(super) held: usize,
 }
 
 /// Builds the engine.
@@ -88,11 +93,12 @@ pub(super) fn build<const D: usize>(system: &System, seed: u64) -> Result<Built<
     if particles.is_empty() {
         return Err(Invalid::new("particle", 0, "at least one particle, in [[particle]] or [[species]]"));
     }
+    let held = pins.iter().flat_map(|pin| pin.axes).filter(|&held| held).count();
     let engine = match system.engine {
-        EngineKind::Event => event_driven(system, boundary, particles, &pins)?,
-        EngineKind::Time => time_driven(system, boundary, particles, pins)?,
+        EngineKind::Event => event_driven(system, boundary, particles),
+        EngineKind::Time => time_driven(system, boundary, particles, pins),
     };
-    Ok(Built { engine, names, trails })
+    Ok(Built { engine: engine.map_err(|error| located(system, error))?, names, trails, held })
 }
 
 fn boundary<const D: usize>(system: &System) -> Result<Boundary<D>, Invalid> {
@@ -102,7 +108,12 @@ fn boundary<const D: usize>(system: &System) -> Result<Boundary<D>, Invalid> {
         Face::Walls => Axis::Walls,
         Face::Open => Axis::Open,
     };
-    let mut boundary = Boundary::new(array("box.lower", &room.lower)?, array("box.upper", &room.upper)?, Axis::Walls);
+    let (lower, upper): ([f64; D], [f64; D]) = (array("box.lower", &room.lower)?, array("box.upper", &room.upper)?);
+    // The difference counts, too: it is what may overflow, or vanish beside the corners.
+    if (0..D).any(|k| !(upper[k] - lower[k] > 0.0 && (upper[k] - lower[k]).is_finite())) {
+        return Err(Invalid::new("box.lower", format!("{lower:?}"), format!("numbers below those of box.upper, {upper:?}")));
+    }
+    let mut boundary = Boundary::new(lower, upper, Axis::Walls);
     match &room.faces {
         Faces::All(face) => boundary.axes = [kind(*face); D],
         Faces::Each(faces) => {
@@ -120,8 +131,11 @@ fn boundary<const D: usize>(system: &System) -> Result<Boundary<D>, Invalid> {
             Some(hole) => Some(Hole { along: axis::<D>(&key("hole.along"), hole.along)?, from: hole.from, to: hole.to }),
         };
         boundary.partitions.push(Partition { axis: axis::<D>(&key("axis"), plate.axis)?, position: plate.position, hole });
+        boundary.validate().map_err(|error| {
+            let field = error.key.strip_prefix("partition ").unwrap_or(&error.key).replace("hole ", "hole.");
+            Invalid { key: key(&field), ..error }
+        })?;
     }
-    boundary.validate()?;
     Ok(boundary)
 }
 
@@ -172,7 +186,7 @@ fn generate<const D: usize>(
 ) -> Result<(), Invalid> {
     for (index, group) in system.species.iter().enumerate() {
         let key = |field: &str| format!("species[{index}].{field}");
-        if group.count == 0 || particles.len() + group.count > MOST_PARTICLES {
+        if group.count == 0 || particles.len().saturating_add(group.count) > MOST_PARTICLES {
             return Err(Invalid::new(
                 key("count"),
                 group.count,
@@ -214,18 +228,31 @@ fn generate<const D: usize>(
         }
         *particles = fresh;
     }
+    if system.particles.is_empty() {
+        to_temperature(system, boundary, particles);
+    }
     Ok(())
 }
 
-fn event_driven<const D: usize>(
-    system: &System,
-    boundary: Boundary<D>,
-    particles: Particles<D>,
-    pins: &[Pin<D>],
-) -> Result<AnyEngine<D>, Invalid> {
+/// Brings what was drawn to exactly the temperature asked for, the mean over the species, and to rest as a whole where
+/// total momentum is conserved. Particles placed by hand keep the velocities they were given, and then so do all.
+fn to_temperature<const D: usize>(system: &System, boundary: &Boundary<D>, particles: &mut Particles<D>) {
+    let count = particles.len();
+    let closed = boundary.conserves_momentum() && count > 1;
+    if closed {
+        stop_drift(particles);
+    }
+    let wanted = system.species.iter().map(|group| group.count as f64 * group.temperature).sum::<f64>() / count as f64;
+    let scale = (wanted / particles.temperature(D * if closed { count - 1 } else { count })).sqrt();
+    if scale.is_finite() {
+        particles.velocity.iter_mut().for_each(|v| *v = *v * scale);
+    }
+}
+
+fn event_driven<const D: usize>(system: &System, boundary: Boundary<D>, particles: Particles<D>) -> Result<AnyEngine<D>, Invalid> {
     let refuse = |key: &str| Err(Invalid::new(key, "given", "nothing: the event-driven engine has none; choose engine = \"time\""));
     if !system.springs.is_empty() {
-        return refuse("spring");
+        return refuse("spring[0]");
     }
     if system.forces.is_some() {
         return refuse("forces");
@@ -233,8 +260,8 @@ fn event_driven<const D: usize>(
     if system.integrator.is_some() {
         return refuse("integrator");
     }
-    if !pins.is_empty() {
-        return refuse("particle.held");
+    if let Some(index) = system.particles.iter().position(|single| !single.held.is_empty()) {
+        return refuse(&format!("particle[{index}].held"));
     }
     if let Some(i) = particles.mass.iter().position(|&mass| mass <= 0.0) {
         return Err(Invalid::new(
@@ -260,6 +287,9 @@ fn time_driven<const D: usize>(
     if system.collisions.is_some() {
         return Err(Invalid::new("collisions", "given", "nothing: the time-driven engine has none; choose engine = \"event\""));
     }
+    if !system.partitions.is_empty() {
+        return Err(Invalid::new("partition[0]", "given", "nothing: the time-driven engine has none; choose engine = \"event\""));
+    }
     let Some(stepper) = &system.integrator else {
         return Err(Invalid::new("integrator", "missing", "name and time_step of an integrator, for engine = \"time\""));
     };
@@ -271,6 +301,12 @@ fn time_driven<const D: usize>(
             Invalid { key, ..error }
         })?,
     };
+    if let Some(step) = integrator.dt()
+        && !(system.duration / MOST_STEPS..=system.duration).contains(&step)
+    {
+        let expected = format!("a number from {:e} to {}, the duration", system.duration / MOST_STEPS, system.duration);
+        return Err(Invalid::new("integrator.time_step", step, expected));
+    }
     let mut forces: Vec<Box<dyn Force<D>>> = vec![];
     if let Some(given) = &system.forces {
         if let Some(gravity) = &given.gravity {
@@ -357,4 +393,43 @@ fn positive(key: &str, value: f64) -> Result<(), Invalid> {
 
 fn not_negative(key: &str, value: f64) -> Result<(), Invalid> {
     if value >= 0.0 && value.is_finite() { Ok(()) } else { Err(Invalid::new(key, value, "a number, zero or more")) }
+}
+
+/// The error of an engine, which counts particles and knows no file, with the key that stands in the file.
+fn located(system: &System, error: Invalid) -> Invalid {
+    let index = |text: &str| text.parse::<usize>().ok();
+    let words: Vec<&str> = error.key.split(' ').collect();
+    let key = match words[..] {
+        [property, "of", "particle", i] => index(i).map(|i| source(system, i, property)),
+        ["particles", i, "and", j] => {
+            // Only those placed by hand can overlap: what is generated keeps clear.
+            let key = index(i).zip(index(j)).map(|(i, j)| source(system, i.max(j), "position"));
+            let value = format!("{} {}", error.key, error.value);
+            return Invalid { key: key.unwrap_or(error.key), value, expected: error.expected };
+        }
+        ["cutoff", "of", ..] => {
+            let long = system.forces.as_ref().is_some_and(|forces| forces.lennard_jones.is_some());
+            Some(if long { "forces.lennard_jones.cutoff" } else { "forces.wca.sigma" }.into())
+        }
+        ["rest", "length", "of", "spring", i] => Some(format!("spring[{i}].rest_length")),
+        ["axis", _, "of", "the", "box"] => Some("box.faces".into()),
+        ["uniform", "field", ..] => Some("field".into()),
+        ["masses"] => Some("particle".into()),
+        ["integrator"] if error.value == Integrator::NAMES[5] => Some("integrator.name".into()),
+        _ => None,
+    };
+    Invalid { key: key.unwrap_or(error.key), ..error }
+}
+
+/// Where particle `i` comes from: those placed by hand are the first.
+fn source(system: &System, i: usize, property: &str) -> String {
+    if i < system.particles.len() {
+        return format!("particle[{i}].{property}");
+    }
+    let mut end = system.particles.len();
+    let group = system.species.iter().position(|group| {
+        end = end.saturating_add(group.count);
+        i < end
+    });
+    group.map_or_else(|| format!("{property} of particle {i}"), |group| format!("species[{group}].{property}"))
 }

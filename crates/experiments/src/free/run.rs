@@ -1,82 +1,96 @@
-//! A free system under way: sampled, drawn, and held against what conservation laws and equations of state say.
+//! A free system under way: advanced, sampled and drawn.
 
-use corpuscle_core::particles::ball_volume;
+use std::collections::VecDeque;
+
 use corpuscle_core::{Axis as Faces, Engine, Failure, Invalid, Particles, Vector};
-use corpuscle_observe::chart::{Axis, Chart, Scale, Series, Style};
-use corpuscle_observe::{
-    Check, Conservation, Drift, Estimate, Histogram, RadialDistribution, Schedule, SpeedDistribution, VirialPressure, WallPressure,
-    blocking, fit, theory,
-};
+use corpuscle_observe::{Chart, Check, Estimate, Histogram, RadialDistribution, Schedule, VirialPressure, WallPressure};
 use corpuscle_scene::{Colour, Colouring, Line, Scene, TrailPoint};
 
 use super::build::{AnyEngine, Built, build};
 use super::spec::{Observable, System};
+use super::verdict::Conserved;
 use crate::{Action, Honesty, Simulation, Table, drawing};
 
 /// Samples taken when the file does not say how often.
 const SAMPLES: f64 = 500.0;
 /// Samples a file may ask for.
 const MOST_SAMPLES: f64 = 1e6;
+/// Samples that go into the radial distribution, which counts pairs.
+const MOST_STRUCTURES: u64 = 500;
 /// Points of a trail.
 const TRAIL: usize = 2000;
-/// Points of a chart.
-const CHART: usize = 1000;
 /// Share of the run after which it counts as in equilibrium.
 const SETTLED: f64 = 0.2;
 
 /// What is noted at each sampling time.
 #[derive(Clone, Copy, Debug)]
-struct Sample {
-    time: f64,
-    kinetic: f64,
-    potential: f64,
-    temperature: f64,
+pub(super) struct Sample {
+    pub(super) time: f64,
+    pub(super) kinetic: f64,
+    pub(super) potential: f64,
+    pub(super) temperature: f64,
     /// Instantaneous virial pressure of a time-driven system.
-    pressure: f64,
+    pub(super) pressure: f64,
+}
+
+/// A step of a path that is drawn.
+struct Step<const D: usize> {
+    point: TrailPoint,
+    unwrapped: Vector<D>,
+    /// Through a periodic face since the step before.
+    jumps: bool,
 }
 
 /// A running free system.
 pub(super) struct Free<const D: usize> {
     title: String,
-    engine: AnyEngine<D>,
+    pub(super) engine: AnyEngine<D>,
     names: Vec<String>,
-    observe: Vec<Observable>,
+    pub(super) observe: Vec<Observable>,
     springs: Vec<[usize; 2]>,
-    trails: Vec<(usize, Vec<TrailPoint>)>,
-    duration: f64,
+    trails: Vec<(usize, VecDeque<Step<D>>)>,
+    pub(super) duration: f64,
+    /// The time asked for last; a fixed step may end a little before.
+    reached: f64,
     schedule: Schedule,
-    samples: Vec<Sample>,
-    conservation: Conservation,
-    energy: Drift<1>,
-    wall_pressure: WallPressure<D>,
-    virial_pressure: VirialPressure<D>,
-    speeds: Histogram,
-    structure: Option<RadialDistribution<D>>,
+    structure_every: u64,
+    pub(super) samples: Vec<Sample>,
+    hottest: f64,
+    /// Index of the first sample in equilibrium, once there is one.
+    pub(super) settled_from: Option<usize>,
+    pub(super) momentum: Conserved<3>,
+    /// Energy against the magnitude of its terms, which rounding is relative to.
+    pub(super) energy: Conserved<1>,
+    /// Energy against what moves: the largest kinetic energy.
+    pub(super) motion: Conserved<1>,
+    /// Highest energy so far less the lowest before it: inelastic collisions never raise it.
+    pub(super) rise: f64,
+    lowest: f64,
+    pub(super) wall_pressure: WallPressure<D>,
+    pub(super) virial_pressure: VirialPressure<D>,
+    pub(super) speeds: Option<Histogram>,
+    pub(super) structure: Option<RadialDistribution<D>>,
     start: Vec<Vector<D>>,
-    displacement: Vec<(f64, f64)>,
-    start_particles: Particles<D>,
-    elastic: bool,
-    conservative: bool,
+    pub(super) displacement: Vec<(f64, f64)>,
+    pub(super) start_particles: Particles<D>,
+    degrees_of_freedom: usize,
+    /// Whether collisions keep energy.
+    pub(super) elastic: bool,
+    /// Whether forces keep energy.
+    pub(super) conservative: bool,
+    /// Whether nothing takes up momentum: no wall, no field, nothing held.
+    pub(super) closed: bool,
+    pub(super) field: bool,
 }
 
 impl<const D: usize> Free<D> {
     pub(super) fn new(system: &System, seed: u64) -> Result<Self, Invalid> {
-        let Built { engine, names, trails } = build::<D>(system, seed)?;
-        let interval = system.sample_interval.unwrap_or(system.duration / SAMPLES);
-        if system.duration / interval > MOST_SAMPLES {
-            return Err(Invalid::new(
-                "sample_interval",
-                interval,
-                format!("at least {}: a million samples", system.duration / MOST_SAMPLES),
-            ));
-        }
+        let Built { engine, names, trails, held } = build::<D>(system, seed)?;
+        let interval = sample_interval(system, &engine)?;
         let particles = engine.snapshot();
         let count = particles.len();
         let radius = particles.radius.iter().copied().fold(0.0, f64::max);
-        let block = (system.duration / 256.0).max(interval);
-        let temperature = particles.temperature(degrees_of_freedom(&engine, count));
         let boundary = engine.boundary();
-        let volume = boundary.accessible_volume(radius);
         let structure = if system.observe.contains(&Observable::RadialDistribution) {
             let reach = 0.5 * boundary.extent().0.into_iter().fold(f64::INFINITY, f64::min);
             let wanted = if radius > 0.0 { 10.0 * radius } else { reach };
@@ -85,29 +99,44 @@ impl<const D: usize> Free<D> {
         } else {
             None
         };
-        let mass = particles.mass.iter().copied().filter(|&mass| mass > 0.0).fold(f64::INFINITY, f64::min);
-        let fastest = 5.0 * (temperature / mass).sqrt().max(f64::MIN_POSITIVE);
+        let field = system.field.iter().any(|&g| g != 0.0);
+        let closed = boundary.conserves_momentum() && !field && held == 0;
+        let massive = particles.mass.iter().filter(|&&mass| mass > 0.0).count();
+        let shared = if closed && massive > 1 { D } else { 0 };
+        let degrees_of_freedom = (D * massive).saturating_sub(held + shared).max(1);
+        let expected_samples = system.duration * (1.0 - SETTLED) / interval;
         let mut free = Self {
-            speeds: Histogram::new(0.0, fastest, 50),
-            structure,
             title: system.title.clone(),
-            wall_pressure: WallPressure::new(boundary, radius, block),
-            virial_pressure: VirialPressure::new(count, volume, temperature, block),
+            // Blocks are set up once the system has settled.
+            wall_pressure: WallPressure::new(boundary, radius, system.duration),
+            virial_pressure: VirialPressure::new(count, boundary.accessible_volume(radius), 0.0, system.duration),
             start: (0..count).map(|i| engine.unwrapped(i)).collect(),
             engine,
             names,
             observe: system.observe.clone(),
             springs: system.springs.iter().map(|bond| [bond.first, bond.second]).collect(),
-            trails: trails.into_iter().map(|i| (i, vec![])).collect(),
+            trails: trails.into_iter().map(|i| (i, VecDeque::new())).collect(),
             duration: system.duration,
+            reached: 0.0,
             schedule: Schedule::new(interval),
+            structure_every: (expected_samples as u64).div_ceil(MOST_STRUCTURES).max(1),
             samples: vec![],
-            conservation: Conservation::default(),
-            energy: Drift::new(),
+            hottest: 0.0,
+            settled_from: None,
+            momentum: Conserved::new(),
+            energy: Conserved::new(),
+            motion: Conserved::new(),
+            rise: 0.0,
+            lowest: f64::INFINITY,
+            speeds: None,
+            structure,
             displacement: vec![],
             start_particles: particles,
+            degrees_of_freedom,
             elastic: system.collisions.as_ref().is_none_or(|collisions| collisions.restitution == 1.0),
             conservative: system.springs.iter().all(|bond| bond.damping == 0.0),
+            closed,
+            field,
         };
         free.sample();
         free.schedule = free.schedule.after_start();
@@ -118,26 +147,45 @@ impl<const D: usize> Free<D> {
         let time = self.engine.time();
         let particles = self.engine.snapshot();
         let (kinetic, potential) = self.engine.energies();
-        let temperature = particles.temperature(degrees_of_freedom(&self.engine, particles.len()));
-        let volume = self.engine.boundary().volume();
+        let temperature = self.temperature(&particles, kinetic);
+        let volume = self.engine.boundary().accessible_volume(self.largest_radius());
         let pressure = match &self.engine {
             AnyEngine::Event(_) => f64::NAN,
-            AnyEngine::Time(engine) => (2.0 * kinetic + engine.virial()) / (D as f64 * volume),
+            AnyEngine::Time(engine) => (particles.len() as f64 * temperature + engine.virial() / D as f64) / volume,
         };
         self.samples.push(Sample { time, kinetic, potential, temperature, pressure });
-        self.conservation.see(&particles);
-        let scale = kinetic.abs() + potential.abs();
-        self.energy.see([kinetic + potential], scale);
-        if time >= SETTLED * self.duration {
-            if self.observe.contains(&Observable::Speeds) {
-                particles.velocity.iter().for_each(|v| self.speeds.add(v.norm()));
+        self.hottest = self.hottest.max(temperature);
+        let moving = particles.velocity.iter().zip(&particles.mass).map(|(v, m)| m * v.norm()).sum();
+        self.momentum.see(particles.momentum().to_three(), moving);
+        let energy = kinetic + potential;
+        self.energy.see([energy], kinetic + potential.abs());
+        self.motion.see([energy], kinetic);
+        self.lowest = self.lowest.min(energy);
+        self.rise = self.rise.max(energy - self.lowest);
+        if self.settled_from.is_none() && time >= SETTLED * self.duration {
+            self.settle(time, temperature, &particles);
+        }
+        if self.settled_from.is_some() {
+            if let Some(speeds) = &mut self.speeds {
+                particles.velocity.iter().for_each(|v| speeds.add(v.norm()));
             }
-            if let Some(structure) = &mut self.structure {
+            if let Some(structure) = &mut self.structure
+                && (self.samples.len() as u64).is_multiple_of(self.structure_every)
+            {
                 structure.add(&particles);
             }
         }
-        for (i, points) in &mut self.trails {
-            points.push(TrailPoint { position: particles.position[*i].to_three(), time });
+        for (i, path) in &mut self.trails {
+            let (place, unwrapped) = (particles.position[*i], self.engine.unwrapped(*i));
+            let jumps = path.back().is_some_and(|last| {
+                // Through a periodic face: the step between the wrapped places is not the real one.
+                let wrapped = place.to_three().into_iter().zip(last.point.position).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
+                wrapped.sqrt() > (unwrapped - last.unwrapped).norm() * (1.0 + 1e-6)
+            });
+            if path.len() == TRAIL {
+                path.pop_front();
+            }
+            path.push_back(Step { point: TrailPoint { position: place.to_three(), time }, unwrapped, jumps });
         }
         if self.observe.contains(&Observable::MeanSquaredDisplacement) {
             let moved: f64 = (0..particles.len()).map(|i| (self.engine.unwrapped(i) - self.start[i]).norm_squared()).sum();
@@ -145,140 +193,92 @@ impl<const D: usize> Free<D> {
         }
     }
 
+    /// From now on the system counts as in equilibrium: averages begin.
+    fn settle(&mut self, time: f64, temperature: f64, particles: &Particles<D>) {
+        self.settled_from = Some(self.samples.len() - 1);
+        let block = (self.duration - time).max(0.0) / 256.0;
+        let block = if block > 0.0 { block } else { self.duration };
+        let (boundary, radius) = (self.engine.boundary(), self.largest_radius());
+        self.wall_pressure = WallPressure::new(boundary, radius, block);
+        self.virial_pressure = VirialPressure::new(particles.len(), boundary.accessible_volume(radius), temperature, block);
+        self.watch(time);
+        if self.observe.contains(&Observable::Speeds) && temperature > 0.0 {
+            let lightest = particles.mass.iter().copied().filter(|&mass| mass > 0.0).fold(f64::INFINITY, f64::min);
+            self.speeds = Some(Histogram::new(0.0, 5.0 * (temperature / lightest).sqrt(), 50));
+        }
+    }
+
+    /// Tells the observers of the pressure how late it is, so that no block stays open for want of a collision.
+    fn watch(&mut self, time: f64) {
+        use corpuscle_core::Observer;
+        let nobody = Particles::<D>::new();
+        let _ = self.wall_pressure.sample(time, &nobody);
+        let _ = self.virial_pressure.sample(time, &nobody);
+    }
+
+    fn advance_sampling(&mut self, to: f64) -> Result<(), Failure> {
+        while let Some(time) = self.schedule.due(to) {
+            self.advance_engine(time)?;
+            self.sample();
+        }
+        self.advance_engine(to)
+    }
+
+    fn advance_engine(&mut self, to: f64) -> Result<(), Failure> {
+        if self.settled_from.is_none() {
+            return self.engine.advance(to, &mut ());
+        }
+        self.engine.advance(to, &mut (&mut self.wall_pressure, &mut self.virial_pressure))?;
+        self.watch(self.engine.time());
+        Ok(())
+    }
+
+    /// Kinetic temperature of the motion relative to the centre of mass where that moves freely, of all motion elsewhere.
+    fn temperature(&self, particles: &Particles<D>, kinetic: f64) -> f64 {
+        let mass: f64 = particles.mass.iter().sum();
+        let drift =
+            if self.closed && particles.len() > 1 && mass > 0.0 { 0.5 * particles.momentum().norm_squared() / mass } else { 0.0 };
+        2.0 * (kinetic - drift).max(0.0) / self.degrees_of_freedom as f64
+    }
+
+    pub(super) fn largest_radius(&self) -> f64 {
+        self.start_particles.radius.iter().copied().fold(0.0, f64::max)
+    }
+
     /// Samples after the start has been forgotten.
-    fn settled(&self) -> &[Sample] {
-        let first = self.samples.partition_point(|sample| sample.time < SETTLED * self.duration);
-        &self.samples[first..]
+    pub(super) fn settled(&self) -> &[Sample] {
+        self.settled_from.map_or(&[], |first| &self.samples[first..])
     }
 
-    /// Whether all particles are hard spheres of one radius and one mass: then the equation of state applies.
-    fn uniform_hard_spheres(&self) -> Option<f64> {
-        let particles = &self.start_particles;
-        let (radius, mass) = (particles.radius[0], particles.mass[0]);
-        let alike = particles.radius.iter().all(|&r| r == radius) && particles.mass.iter().all(|&m| m == mass);
-        let AnyEngine::Event(engine) = &self.engine else { return None };
-        let bulk = engine.boundary().axes.iter().all(|&axis| axis == Faces::Periodic) && engine.boundary().partitions.is_empty();
-        let free = engine.rules().field == Vector::ZERO && self.elastic;
-        // A finite system in a periodic box misses a pair term of order 1/N: below a hundred it would show.
-        (alike && bulk && free && radius > 0.0 && particles.len() >= 100).then_some(radius)
+    /// Whether the run has reached its end.
+    pub(super) fn done(&self) -> bool {
+        self.reached >= self.duration
     }
 
-    fn energy_chart(&self) -> Chart {
-        let series = |name: &str, value: fn(&Sample) -> f64| {
-            Series::new(name, Style::Line, thin(&self.samples).map(|sample| (sample.time, value(sample))))
-        };
-        let mut chart = Chart::new("energy", "Energy", Axis::linear("time t", ""), Axis::linear("energy E", ""))
-            .with(series("kinetic", |sample| sample.kinetic));
-        if self.samples.iter().any(|sample| sample.potential != 0.0) {
-            chart = chart
-                .with(series("potential", |sample| sample.potential))
-                .with(series("total", |sample| sample.kinetic + sample.potential));
-        }
-        chart
-    }
-
-    fn temperature_chart(&self) -> Chart {
-        Chart::new("temperature", "Temperature", Axis::linear("time t", ""), Axis::linear("temperature k_B T", "")).with(
-            Series::new("kinetic temperature", Style::Line, thin(&self.samples).map(|sample| (sample.time, sample.temperature))),
-        )
-    }
-
-    fn displacement_chart(&self) -> Option<Chart> {
-        let points = self.displacement.iter().filter(|(time, moved)| *time > 0.0 && *moved > 0.0).copied();
-        (self.displacement.len() > 1).then(|| {
-            Chart::new(
-                "mean-squared-displacement",
-                "Mean squared displacement",
-                Axis::logarithmic("time t", ""),
-                Axis::logarithmic("⟨|r(t) − r(0)|²⟩", ""),
-            )
-            .with(Series::new("measured", Style::Line, points))
-        })
-    }
-
-    fn speed_chart(&self) -> Option<Chart> {
-        let particles = &self.start_particles;
-        let mass = particles.mass[0];
-        let alike = mass > 0.0 && particles.mass.iter().all(|&m| m == mass);
-        if self.speeds.total() == 0 || !alike {
-            return None;
-        }
-        let settled = self.settled();
-        let temperature = settled.iter().map(|sample| sample.temperature).sum::<f64>() / settled.len() as f64;
-        let maxwell = SpeedDistribution::maxwell(D, temperature, mass);
-        let bars = self.speeds.densities().into_iter().map(|(speed, density)| (speed, density.mean));
-        let last = self.speeds.edges().last().copied()?;
-        Some(
-            Chart::new(
-                "speeds",
-                "Distribution of speeds",
-                Axis::linear("speed v", ""),
-                Axis::linear("probability density f(v)", ""),
-            )
-            .with(Series::new("measured", Style::Bars, bars))
-            .with(Series::theory("Maxwell", 0.0, last, 200, Scale::Linear, |speed| maxwell.density(speed))),
-        )
-    }
-
-    fn structure_chart(&self) -> Option<Chart> {
-        let structure = self.structure.as_ref().filter(|structure| structure.samples() > 0)?;
-        let points = structure.points().into_iter().map(|(r, g)| (r, g.mean, g.standard_error));
-        Some(
-            Chart::new("radial-distribution", "Radial distribution", Axis::linear("distance r", ""), Axis::linear("g(r)", ""))
-                .with(Series::with_errors("measured", Style::Line, points)),
-        )
-    }
-
-    /// Pressure with its error, by each way that applies.
-    fn pressures(&self) -> Vec<(&'static str, Estimate)> {
-        let mut pressures = vec![];
-        if self.wall_pressure.hits() > 0 {
-            pressures.push(("pressure on the walls P", self.wall_pressure.estimate()));
-        }
-        match &self.engine {
-            AnyEngine::Event(_) => pressures.push(("pressure from the virial P", self.virial_pressure.estimate())),
-            AnyEngine::Time(_) => {
-                let series: Vec<f64> = self.settled().iter().map(|sample| sample.pressure).collect();
-                pressures.push(("pressure from the virial P", blocking(&series).estimate));
-            }
-        }
-        pressures
-    }
-
-    /// Energy of a time-driven system may fluctuate with the step, but must not drift: the slope against zero, with the
-    /// error from the scatter of the means over tenths of the run.
-    fn energy_slope(&self) -> Option<Check> {
-        const PARTS: usize = 10;
-        if self.samples.len() < 10 * PARTS {
-            return None;
-        }
-        let scale = self.samples.iter().map(|sample| sample.kinetic.abs() + sample.potential.abs()).sum::<f64>()
-            / self.samples.len() as f64;
-        let parts = self.samples.chunks_exact(self.samples.len() / PARTS);
-        let means =
-            parts.map(|part| part.iter().map(|sample| sample.kinetic + sample.potential).sum::<f64>() / part.len() as f64 / scale);
-        let points: Vec<(f64, f64)> = means.enumerate().map(|(k, energy)| ((k as f64 + 0.5) / PARTS as f64, energy)).collect();
-        let line = fit::line_by_scatter(&points)?;
-        Some(line.slope.check(
-            "drift of the energy over the run, relative",
-            0.0,
-            "a symplectic integrator keeps a shadow energy for ever",
-        ))
+    /// Whether a pressure is one number: no field that layers the system, no open face, no partition.
+    pub(super) fn has_pressure(&self) -> bool {
+        let boundary = self.engine.boundary();
+        !self.field && boundary.partitions.is_empty() && !boundary.axes.contains(&Faces::Open)
     }
 }
 
-/// At most [`CHART`] of the samples, evenly.
-fn thin(samples: &[Sample]) -> impl Iterator<Item = &Sample> {
-    samples.iter().step_by(samples.len().div_ceil(CHART).max(1))
-}
-
-fn degrees_of_freedom<const D: usize>(engine: &AnyEngine<D>, count: usize) -> usize {
-    if engine.boundary().conserves_momentum() && count > 1 { D * (count - 1) } else { D * count }
+fn sample_interval<const D: usize>(system: &System, engine: &AnyEngine<D>) -> Result<f64, Invalid> {
+    let step = match engine {
+        AnyEngine::Event(_) => 0.0,
+        AnyEngine::Time(engine) => engine.integrator().dt().unwrap_or(0.0),
+    };
+    let Some(interval) = system.sample_interval else { return Ok((system.duration / SAMPLES).max(step)) };
+    let least = step.max(system.duration / MOST_SAMPLES);
+    if interval < least {
+        let expected = format!("at least {least}: one step of time, and a million samples in all");
+        return Err(Invalid::new("sample_interval", interval, expected));
+    }
+    Ok(interval)
 }
 
 impl<const D: usize> Simulation for Free<D> {
     fn time(&self) -> f64 {
-        self.engine.time()
+        self.reached
     }
 
     fn end(&self) -> f64 {
@@ -286,11 +286,9 @@ impl<const D: usize> Simulation for Free<D> {
     }
 
     fn advance(&mut self, to: f64) -> Result<(), Failure> {
-        while let Some(time) = self.schedule.due(to) {
-            self.engine.advance(time, &mut (&mut self.wall_pressure, &mut self.virial_pressure))?;
-            self.sample();
-        }
-        self.engine.advance(to, &mut (&mut self.wall_pressure, &mut self.virial_pressure))
+        let outcome = self.advance_sampling(to);
+        self.reached = if outcome.is_ok() { self.reached.max(to) } else { self.engine.time() };
+        outcome
     }
 
     fn draw(&self, scene: &mut Scene) {
@@ -318,75 +316,32 @@ impl<const D: usize> Simulation for Free<D> {
             }
         }
         scene.colouring = if speeds {
-            let temperature = self.samples.last().map_or(1.0, |sample| sample.temperature);
+            // The hottest so far, so that a gas that cools turns dark.
             Colouring::Speed {
-                most: 3.0 * (temperature / self.start_particles.mass[0].max(f64::MIN_POSITIVE)).sqrt(),
+                most: 3.0 * (self.hottest / self.start_particles.mass[0].max(f64::MIN_POSITIVE)).sqrt(),
                 unit: String::new(),
             }
         } else {
             Colouring::Species(self.names.clone())
         };
-        for (i, points) in &self.trails {
+        for (i, path) in &self.trails {
             let trail = scene.trail(*i as u32, TRAIL, Colour::Accent(self.start_particles.species[*i] as u8));
-            let seen = trail.total() as usize;
-            for &point in points.iter().skip(seen) {
-                trail.push(point);
+            let drawn = trail.points().back().map_or(f64::NEG_INFINITY, |last| last.time);
+            for step in path.iter().filter(|step| step.point.time > drawn) {
+                if step.jumps { trail.jump(step.point) } else { trail.push(step.point) }
             }
         }
         scene.title.clone_from(&self.title);
         let (kinetic, potential) = self.engine.energies();
-        scene.caption = format!("t = {:.2}   {} particles   E = {:.6}", self.engine.time(), self.start.len(), kinetic + potential);
+        scene.caption = format!("{} particles   E = {:.6}", self.start.len(), kinetic + potential);
     }
 
     fn charts(&self) -> Vec<Chart> {
-        let mut charts = vec![self.energy_chart()];
-        if self.observe.contains(&Observable::Temperature) {
-            charts.push(self.temperature_chart());
-        }
-        charts.extend(self.speed_chart());
-        charts.extend(self.structure_chart());
-        charts.extend(self.displacement_chart());
-        charts
+        self.all_charts()
     }
 
     fn checks(&self) -> Vec<Check> {
-        let mut checks = vec![];
-        let done = self.engine.time() >= self.duration;
-        match &self.engine {
-            AnyEngine::Event(engine) if self.elastic => {
-                if let Some(drift) = self.energy.largest() {
-                    checks.push(Check::at_most(
-                        "largest energy drift, relative",
-                        drift,
-                        1e-10,
-                        "elastic collisions, double precision",
-                    ));
-                }
-                if engine.boundary().conserves_momentum()
-                    && engine.rules().field == Vector::ZERO
-                    && let Some(drift) = self.conservation.momentum.largest()
-                {
-                    checks.push(Check::at_most("largest momentum drift, relative", drift, 1e-10, "no walls, double precision"));
-                }
-            }
-            AnyEngine::Time(engine) if done && self.conservative && engine.integrator().is_symplectic() => {
-                checks.extend(self.energy_slope());
-            }
-            _ => {}
-        }
-        if let Some(radius) = self.uniform_hard_spheres().filter(|_| done) {
-            let particles = &self.start_particles;
-            let packing = particles.len() as f64 * ball_volume::<D>(radius) / self.engine.boundary().volume();
-            let z = self.virial_pressure.compressibility();
-            let expected = theory::compressibility::<D>(packing);
-            let source = if D == 2 { "Henderson 1975, hard disks" } else { "Carnahan and Starling 1969, hard spheres" };
-            if packing < 0.45 {
-                // The pair sum of N particles has N - 1 partners each.
-                let finite = 1.0 + (expected - 1.0) * (1.0 - 1.0 / particles.len() as f64);
-                checks.push(z.check("compressibility factor Z", finite, source));
-            }
-        }
-        checks
+        self.all_checks()
     }
 
     fn honesty(&self) -> Honesty {
@@ -404,19 +359,20 @@ impl<const D: usize> Simulation for Free<D> {
             work,
             work_unit,
             largest_overlap,
-            energy_drift: self.energy.largest(),
-            momentum_drift: self.engine.boundary().conserves_momentum().then(|| self.conservation.momentum.largest()).flatten(),
+            energy_drift: match &self.engine {
+                AnyEngine::Event(_) => self.elastic.then(|| self.energy.relative()),
+                AnyEngine::Time(_) => self.conservative.then(|| self.motion.relative()),
+            },
+            momentum_drift: self.closed.then(|| self.momentum.relative()),
             ..Honesty::default()
         }
     }
 
     fn tables(&self) -> Vec<Table> {
-        let mut tables = vec![];
-        if self.observe.contains(&Observable::Pressure) {
-            let rows = self.pressures().iter().map(|(_, estimate)| vec![estimate.mean, estimate.standard_error]).collect();
-            tables.push(Table { name: "pressure".into(), columns: vec!["pressure".into(), "standard_error".into()], rows });
-        }
-        tables
+        let row = |(_, estimate): &(&str, Estimate)| vec![estimate.mean, estimate.standard_error];
+        let rows: Vec<_> = self.pressures().iter().map(row).collect();
+        let columns = vec!["pressure".into(), "standard_error".into()];
+        if rows.is_empty() { vec![] } else { vec![Table { name: "pressure".into(), columns, rows }] }
     }
 
     fn moments(&self) -> Vec<f64> {
@@ -425,6 +381,8 @@ impl<const D: usize> Simulation for Free<D> {
 
     fn act(&mut self, action: Action) -> Result<(), Invalid> {
         let Action::Reverse = action;
+        // Turning round is an outside change of momentum: what is conserved counts from here.
+        self.momentum = Conserved::new();
         match &mut self.engine {
             AnyEngine::Event(engine) => engine.reverse_velocities(),
             AnyEngine::Time(engine) => engine.edit(|particles| particles.velocity.iter_mut().for_each(|v| *v = -*v))?,
