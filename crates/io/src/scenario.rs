@@ -301,6 +301,15 @@ impl Scenario {
     }
 }
 
+/// What serde says of a word it does not know, taken apart: whether it is a key, the word, and the known ones. Its message is
+/// "unknown field `raduis`, expected one of `radius`, `mass`", or "unknown variant" of the same form.
+fn unknown_word(message: &str) -> Option<(bool, &str, Vec<&str>)> {
+    let key = message.starts_with("unknown field ");
+    let mut quoted = message.split('`').skip(1).step_by(2);
+    let word = quoted.next()?;
+    (key || message.starts_with("unknown variant ")).then(|| (key, word, quoted.collect()))
+}
+
 const SEED: &str = "a whole number from 0 to 18446744073709551615";
 const DURATION: &str = "a positive number: the physical time to run for";
 
@@ -364,7 +373,11 @@ impl Reader<'_> {
         let system = free::System::deserialize(toml::de::Deserializer::from(document)).map_err(|error| {
             let place = error.span().map(|span| Place::of(self.text, span.start));
             let found = error.span().map_or_else(|| "(incomplete)".into(), |span| quoted(self.text, span));
-            let invalid = Invalid::new("system", found, error.message().replace('\n', "; "));
+            let invalid = match unknown_word(error.message()) {
+                Some((true, word, known)) => Invalid::new(word, "(an unknown key)", one_of(word, known)),
+                Some((false, word, known)) => Invalid::new("system", found, one_of(word, known)),
+                None => Invalid::new("system", found, error.message().replace('\n', "; ")),
+            };
             Refusal::new(Origin::File(self.path.into(), place), invalid)
         })?;
         let scenario = Scenario::of(Subject::Free(Box::new(system)), Settings::new(&[], seed));

@@ -166,9 +166,13 @@ fn a_system_of_its_own_is_read_written_and_located() {
     for (from, to, message) in [
         ("radius = 0.3", "radius = -0.3", ":12:10: species[0].radius = -0.3: expected"),
         ("radius = 0.3", "radius = \"big\"", ":12:10: system = \"big\": expected invalid type"),
-        ("count = 5", "cuont = 5", ":11:1: system = cuont: expected unknown field `cuont`"),
+        ("count = 5", "cuont = 5", ":11:1: cuont = (an unknown key): expected one of name, count,"),
+        ("radius = 0.3", "raduis = 0.3", ":12:1: raduis = (an unknown key): expected one of"),
+        ("radius = 0.3", "raduis = 0.3", "did you mean `radius`?"),
+        ("faces = ", "facse = ", "did you mean `faces`?"),
+        ("\"event\"", "\"evnt\"", ":2:10: system = \"evnt\": expected one of event, time; did you mean `event`?"),
         ("seed = 9", "seed = -9", ":1:8: seed = -9: expected a whole number"),
-        ("\"event\"", "\"magic\"", ":2:10: system = \"magic\": expected unknown variant"),
+        ("\"event\"", "\"magic\"", ":2:10: system = \"magic\": expected one of event, time"),
     ] {
         let refusal = parse(&FREE.replace(from, to)).and_then(|scenario| scenario.start().map(|_| ())).unwrap_err().to_string();
         assert!(refusal.contains(message), "{refusal}\nnot {message}");
