@@ -80,7 +80,8 @@ pub(super) struct Free<const D: usize> {
     pub(super) conservative: bool,
     /// Whether nothing takes up momentum: no wall, no field, nothing held.
     pub(super) closed: bool,
-    pub(super) field: bool,
+    /// Uniform acceleration; empty for none.
+    field: Vec<f64>,
 }
 
 impl<const D: usize> Free<D> {
@@ -136,7 +137,7 @@ impl<const D: usize> Free<D> {
             elastic: system.collisions.as_ref().is_none_or(|collisions| collisions.restitution == 1.0),
             conservative: system.springs.iter().all(|bond| bond.damping == 0.0),
             closed,
-            field,
+            field: system.field.clone(),
         };
         free.sample();
         free.schedule = free.schedule.after_start();
@@ -258,7 +259,7 @@ impl<const D: usize> Free<D> {
     /// Whether a pressure is one number: no field that layers the system, no open face, no partition.
     pub(super) fn has_pressure(&self) -> bool {
         let boundary = self.engine.boundary();
-        !self.field && boundary.partitions.is_empty() && !boundary.axes.contains(&Faces::Open)
+        self.field.iter().all(|&g| g == 0.0) && boundary.partitions.is_empty() && !boundary.axes.contains(&Faces::Open)
     }
 }
 
