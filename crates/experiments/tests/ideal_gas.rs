@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used)] // helpers of tests are tests too
 
+mod common;
+
 use std::collections::BTreeMap;
 
 use corpuscle_experiments::{Settings, Simulation, find};
@@ -11,22 +13,12 @@ use corpuscle_observe::{Check, Estimate, Style};
 /// A fraction of the default's size, so that ten seeds take seconds.
 const SMALL: [(&str, &str); 4] = [("points", "3"), ("replicas", "6"), ("duration", "20"), ("particles", "100")];
 
-fn settings(seed: u64, values: &[(&str, &str)]) -> Settings {
-    let mut settings = Settings::new(find("ideal-gas").unwrap().parameters, seed);
-    for (key, text) in values {
-        settings.set_text(key, text).unwrap();
-    }
-    settings
-}
-
 fn start(seed: u64, values: &[(&str, &str)]) -> Box<dyn Simulation> {
-    (find("ideal-gas").unwrap().start)(&settings(seed, values)).unwrap()
+    common::start("ideal-gas", seed, values).unwrap()
 }
 
 fn run(seed: u64, values: &[(&str, &str)]) -> Box<dyn Simulation> {
-    let mut simulation = start(seed, values);
-    simulation.advance(simulation.end()).unwrap();
-    simulation
+    common::run("ideal-gas", seed, values, 1)
 }
 
 /// Over ten seeds the scores of every check are standard normal deviates: the mean is zero, the squares are neither too large

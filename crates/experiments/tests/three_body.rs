@@ -2,23 +2,18 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests are tests too
 
+mod common;
+
 use corpuscle_core::Invalid;
-use corpuscle_experiments::{Settings, Simulation, find};
+use corpuscle_experiments::Simulation;
 use corpuscle_observe::Check;
 
 fn start(seed: u64, values: &[(&str, &str)]) -> Result<Box<dyn Simulation>, Invalid> {
-    let experiment = find("three-body").unwrap();
-    let mut settings = Settings::new(experiment.parameters, seed);
-    for (key, text) in values {
-        settings.set_text(key, text)?;
-    }
-    (experiment.start)(&settings)
+    common::start("three-body", seed, values)
 }
 
 fn run(seed: u64, values: &[(&str, &str)]) -> Box<dyn Simulation> {
-    let mut simulation = start(seed, values).unwrap();
-    simulation.advance(simulation.end()).unwrap();
-    simulation
+    common::run("three-body", seed, values, 1)
 }
 
 fn check<'a>(checks: &'a [Check], words: &str) -> &'a Check {
