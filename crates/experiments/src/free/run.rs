@@ -55,7 +55,6 @@ pub(super) struct Free<const D: usize> {
     schedule: Schedule,
     structure_every: u64,
     pub(super) samples: Vec<Sample>,
-    hottest: f64,
     /// Index of the first sample in equilibrium, once there is one.
     pub(super) settled_from: Option<usize>,
     pub(super) momentum: Conserved<3>,
@@ -122,7 +121,6 @@ impl<const D: usize> Free<D> {
             schedule: Schedule::new(interval),
             structure_every: (expected_samples as u64).div_ceil(MOST_STRUCTURES).max(1),
             samples: vec![],
-            hottest: 0.0,
             settled_from: None,
             momentum: Conserved::new(),
             energy: Conserved::new(),
@@ -155,7 +153,6 @@ impl<const D: usize> Free<D> {
             AnyEngine::Time(engine) => (particles.len() as f64 * temperature + engine.virial() / D as f64) / volume,
         };
         self.samples.push(Sample { time, kinetic, potential, temperature, pressure });
-        self.hottest = self.hottest.max(temperature);
         let moving = particles.velocity.iter().zip(&particles.mass).map(|(v, m)| m * v.norm()).sum();
         self.momentum.see(particles.momentum().to_three(), moving);
         let energy = kinetic + potential;
@@ -317,9 +314,11 @@ impl<const D: usize> Simulation for Free<D> {
             }
         }
         scene.colouring = if speeds {
-            // The hottest so far, so that a gas that cools turns dark.
+            // Of late: a gas that cools keeps its contrast, and colours do not flicker.
+            let late = &self.samples[self.samples.len().saturating_sub(25)..];
+            let temperature = late.iter().map(|sample| sample.temperature).sum::<f64>() / late.len() as f64;
             Colouring::Speed {
-                most: 3.0 * (self.hottest / self.start_particles.mass[0].max(f64::MIN_POSITIVE)).sqrt(),
+                most: 3.0 * (temperature / self.start_particles.mass[0].max(f64::MIN_POSITIVE)).sqrt(),
                 unit: String::new(),
             }
         } else {
