@@ -138,7 +138,8 @@ impl Plan {
         // A last picture that rounding puts a hair after the end belongs to the clip.
         let count = ((to - from) / step * (1.0 + f64::EPSILON * 4.0)).floor() + 1.0;
         if count > MOST {
-            let expected = format!("a speed at which {} to {} takes at most {MOST} pictures", significant(from, 5), significant(to, 5));
+            let expected =
+                format!("a speed at which {} to {} takes at most {MOST} pictures", significant(from, 5), significant(to, 5));
             let speed = arguments.speed.unwrap_or(step * arguments.fps);
             return Err(refuse("speed", significant(speed, 5), expected));
         }

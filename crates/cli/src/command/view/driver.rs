@@ -138,7 +138,7 @@ impl Driver {
         self.simulation.draw(scene);
         let pause = if self.paused { "paused · " } else { "" };
         let more = if self.notice.is_empty() { String::new() } else { format!(" · {}", self.notice) };
-        scene.caption = format!("{} · {pause}{} a second{more}", scene.caption, significant(self.speed(), 3));
+        scene.caption = format!("{} · {pause}speed {} a second{more}", scene.caption, significant(self.speed(), 3));
         true
     }
 
