@@ -50,7 +50,15 @@ fn every_preset_agrees_with_theory() {
         for chart in simulation.charts() {
             for series in &chart.series {
                 assert!(series.x.len() <= 2000 && series.x.len() == series.y.len(), "{preset}: {}", chart.name);
-                assert!(series.x.iter().chain(&series.y).all(|x| x.is_finite()), "{preset}: {} {}", chart.name, series.name);
+                // Only the rows of the space-time chart are interrupted, by points that are none.
+                let gap = |x: f64, y: f64| chart.name == "space-time" && x.is_nan() && y.is_nan();
+                let mut points = series.x.iter().zip(&series.y);
+                assert!(
+                    points.all(|(&x, &y)| (x.is_finite() && y.is_finite()) || gap(x, y)),
+                    "{preset}: {} {}",
+                    chart.name,
+                    series.name
+                );
             }
         }
         for table in simulation.tables() {
@@ -108,7 +116,8 @@ fn stopping_on_the_way_changes_nothing() {
     let set = settings(3, &[("masses", "170")]);
     let (once, often) = (run(&set, 1), run(&set, 97));
     assert_eq!(once.checks(), often.checks());
-    assert_eq!(once.charts(), often.charts());
+    // As text: the gaps of a chart are equal to each other as well.
+    assert_eq!(format!("{:?}", once.charts()), format!("{:?}", often.charts()));
 }
 
 #[test]
