@@ -39,8 +39,10 @@ impl Subject {
 }
 
 fn assignment(text: &str) -> Result<(String, String), String> {
-    let (key, value) = text.split_once('=').ok_or("expected KEY=VALUE, as in temperature=2.5")?;
-    Ok((key.trim().into(), value.trim().into()))
+    text.split_once('=')
+        .map(|(key, value)| (key.trim().to_owned(), value.trim().to_owned()))
+        .filter(|(key, _)| !key.is_empty())
+        .ok_or_else(|| "expected KEY=VALUE, as in temperature=2.5".into())
 }
 
 fn seed(text: &str) -> Result<u64, String> {

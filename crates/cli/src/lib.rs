@@ -55,7 +55,7 @@ pub fn main(registry: Registry<'_>) -> ExitCode {
             console::unless_gone(error.print())?;
             Ok(ExitCode::SUCCESS)
         }
-        Err(error) => Err(usage::refusal(&error).into()),
+        Err(error) => Err(usage::refusal(&error)),
     }));
     match outcome {
         Ok(Ok(code)) => code,

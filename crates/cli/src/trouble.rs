@@ -12,6 +12,9 @@ pub(crate) enum Trouble {
     /// The input cannot be used.
     #[error(transparent)]
     Refused(#[from] Refusal),
+    /// The arguments cannot be understood.
+    #[error("on the command line: {0}")]
+    Usage(String),
     /// The dynamics broke down.
     #[error(transparent)]
     Failed(#[from] Failure),
@@ -19,7 +22,7 @@ pub(crate) enum Trouble {
     #[error(transparent)]
     Write(#[from] WriteError),
     /// Something could not be drawn.
-    #[error(transparent)]
+    #[error("{}{}", .0, remedy(.0))]
     Render(#[from] RenderError),
     /// Standard output refuses.
     #[error("standard output: {0}")]
@@ -34,9 +37,18 @@ impl Trouble {
     pub(crate) fn exit_code(&self) -> ExitCode {
         match self {
             Self::Refused(_)
+            | Self::Usage(_)
             | Self::Write(WriteError::NotEmpty(_) | WriteError::NotAFolder(_))
             | Self::Render(RenderError::Size { .. } | RenderError::Clip { .. }) => ExitCode::from(2),
             _ => ExitCode::from(1),
         }
+    }
+}
+
+/// What may help when the driver gives no context: its own words name no package.
+fn remedy(error: &RenderError) -> &'static str {
+    match error {
+        RenderError::Context(_) if cfg!(target_os = "linux") => ": install libegl1 and libgl1-mesa-dri (Debian/Ubuntu)",
+        _ => "",
     }
 }

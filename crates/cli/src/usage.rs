@@ -8,6 +8,8 @@ use clap::error::{ContextKind, ContextValue};
 use corpuscle_core::Invalid;
 use corpuscle_io::{Origin, Refusal, Registry};
 
+use crate::trouble::Trouble;
+
 /// What to type first.
 pub(crate) fn welcome(registry: Registry) -> String {
     let names: Vec<&str> = registry.iter().map(|experiment| experiment.name).collect();
@@ -30,13 +32,14 @@ pub(crate) fn welcome(registry: Registry) -> String {
 }
 
 /// Arguments that cannot be read, in one line: the option, the value, and what was expected.
-pub(crate) fn refusal(error: &Error) -> Refusal {
+pub(crate) fn refusal(error: &Error) -> Trouble {
     let context = |kind| error.get(kind).map(words).filter(|words| !words.is_empty());
-    let invalid = match (context(ContextKind::InvalidArg), context(ContextKind::InvalidValue)) {
-        (Some(argument), Some(value)) => Invalid::new(key(&argument), value, expected(error)),
-        _ => Invalid::new("arguments", first_sentence(error), "what --help shows"),
-    };
-    Refusal::new(Origin::CommandLine, invalid)
+    if let (Some(argument), Some(value)) = (context(ContextKind::InvalidArg), context(ContextKind::InvalidValue)) {
+        return Refusal::new(Origin::CommandLine, Invalid::new(key(&argument), value, expected(error))).into();
+    }
+    let near = context(ContextKind::SuggestedArg).or_else(|| context(ContextKind::SuggestedSubcommand));
+    let advice = near.map_or_else(|| "--help shows what there is".into(), |near| format!("did you mean `{near}`?"));
+    Trouble::Usage(format!("{}; {advice}", first_sentence(error)))
 }
 
 /// `--seed <SEED>` is called `seed` in every other message.

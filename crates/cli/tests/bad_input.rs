@@ -61,41 +61,138 @@ fn keys_and_values_of_an_experiment() {
     refused_file("experiment = \"brownian\"\nduration = -1\n", &["scenario.toml:2:12", "duration = -1"]);
 }
 
+/// A row: the arguments, and what the one line has to name.
+type Row<'a> = (&'a [&'a str], &'a [&'a str]);
+
 #[test]
 fn values_on_the_command_line() {
-    for (assignment, parts) in [
-        ("radius=-1", ["on the command line", "radius = -1"]),
-        ("radius=NaN", ["on the command line", "radius = NaN"]),
-        ("particles=0", ["on the command line", "particles = 0"]),
-        ("particles=", ["on the command line", "a whole number"]),
-        ("partcles=5", ["partcles = (an unknown key)", "did you mean `particles`?"]),
-    ] {
-        refused(None, &["run", "brownian", "--set", assignment], &parts);
+    let rows: &[Row] = &[
+        (&["brownian", "--set", "radius=-1"], &["on the command line", "radius = -1", "a number from"]),
+        (&["brownian", "--set", "radius=NaN"], &["on the command line", "radius = NaN"]),
+        (&["brownian", "--set", "temperature=-1"], &["temperature = -1", "a number from"]),
+        (&["brownian", "--set", "temperature=1e999"], &["temperature = ", "a number from"]),
+        (&["brownian", "--set", "particles=0"], &["on the command line", "particles = 0"]),
+        (&["brownian", "--set", "particles="], &["on the command line", "a whole number"]),
+        (&["brownian", "--set", "particles=1e9"], &["particles = 1e9", "a whole number from"]),
+        (&["brownian", "--set", "particles=1000000000000"], &["particles = 1000000000000", "a whole number from"]),
+        (&["brownian", "--set", "particles=99999999999999999999999"], &["particles = 9999", "a whole number from"]),
+        (&["brownian", "--set", "partcles=5"], &["partcles = (an unknown key)", "did you mean `particles`?"]),
+        (&["brownian", "--set", "nosuch=1"], &["nosuch", "one of", "temperature"]),
+        (&["brownian", "--set", "=1"], &["set = =1", "KEY=VALUE"]),
+        (&["brownian", "--set", "no-equals-sign"], &["set = no-equals-sign", "KEY=VALUE"]),
+        (&["three-body", "--set", "masses=1,2"], &["masses = [1.0, 2.0]", "three"]),
+        (&["three-body", "--set", "masses=1,2,x"], &["masses = "]),
+        (&["three-body", "--set", "preset=foo"], &["preset = foo", "figure-eight"]),
+        (&["three-body", "--set", "preset=figure-ate"], &["preset = figure-ate", "figure-eight"]),
+        (&["wave", "--seed", "abc"], &["seed = abc", "a whole number from 0"]),
+        (&["wave", "--seed", "-1"], &["seed = -1", "a whole number from 0"]),
+        (&["wave", "--seed", "18446744073709551616"], &["seed = 18446744073709551616", "a whole number from 0"]),
+        (&["wave", "--threads", "0"], &["threads = 0", "1..=1024"]),
+        (&["wave", "--duration", "NaN"], &["duration = NaN", "a number above 0"]),
+        (&["wave", "--duration", "-1"], &["duration = -1", "a number above 0"]),
+        (&["wave", "--duration", "1e300"], &["duration = 1", "a number from"]),
+        (&["wave", "--out", ""], &["out", "a value"]),
+        (&["wave", "--force"], &["--out"]),
+        (&["wave", "entropy"], &["entropy"]),
+        (&["wave", "--frobnicate"], &["--frobnicate", "--help"]),
+        (&["wave", "--sed", "3"], &["--sed", "did you mean `--se"]),
+        (&["nosuch"], &["experiment = nosuch", "a scenario file or one of", "three-body"]),
+        (&[""], &["experiment = ", "a scenario file"]),
+        (&[], &["NAME|FILE"]),
+    ];
+    for (arguments, parts) in rows {
+        refused(None, &[&["run"], *arguments].concat(), parts);
     }
 }
 
 #[test]
-fn arguments_that_make_no_sense() {
+fn arguments_of_pictures_and_clips() {
+    let rows: &[Row] = &[
+        (&["view", "wave", "--size", "0x0"], &["size = 0x0", "WIDTHxHEIGHT"]),
+        (&["view", "wave", "--size", "-5x5"], &["size = -5x5", "WIDTHxHEIGHT"]),
+        (&["view", "wave", "--size", "large"], &["size = large", "WIDTHxHEIGHT"]),
+        (&["view", "wave", "--screenshot", "a.png", "--size", "99999x99999"], &["99999", "from 1 to"]),
+        (&["view", "wave", "--screenshot", "a.png", "--at", "-1s"], &["at = -1s", "a time from 0"]),
+        (&["view", "wave", "--screenshot", "a.png", "--at", "soon"], &["at = soon", "as in 2.5s"]),
+        (&["view", "wave", "--screenshot", "a.png", "--at", "1sss"], &["at = 1sss", "as in 2.5s"]),
+        (&["view", "wave", "--screenshot", "a.png", "--at", "inf"], &["at = inf", "a time"]),
+        (&["view", "wave", "--screenshot", "a.jpg"], &["screenshot = a.jpg", ".png"]),
+        (&["view", "wave", "--screenshot", "none/a.png"], &["screenshot = none/a.png", "a folder that exists"]),
+        (&["view", "wave", "--palette", "pink"], &["palette = pink", "dark, light"]),
+        (&["record", "wave"], &["--out"]),
+        (&["record", "wave", "--out", "c.mp4", "--fps", "0"], &["fps = 0", "a number above 0"]),
+        (&["record", "wave", "--out", "c.mp4", "--fps", "-3"], &["fps = -3", "a number above 0"]),
+        (&["record", "wave", "--out", "c.mp4", "--fps", "1e9"], &["fps = 1000000000", "at most 1000"]),
+        (&["record", "wave", "--out", "c.gif", "--fps", "60"], &["fps = 60", "at most 50"]),
+        (&["record", "wave", "--out", "c.mp4", "--speed", "0"], &["speed = 0", "a number above 0"]),
+        (&["record", "wave", "--out", "c.mp4", "--speed", "1e-9"], &["speed = 1e-9", "at most 100000 pictures"]),
+        (&["record", "wave", "--out", "c.mp4", "--speed", "1e-320"], &["speed = ", "at most 100000 pictures"]),
+        (&["record", "wave", "--out", "c.mp4", "--size", "641x480"], &["c.mp4", "even"]),
+        (&["record", "wave", "--out", "c.mp4", "--size", "99999x99998"], &["size = 99999x99998", "3840x2160"]),
+        (&["record", "wave", "--out", "c.mp4", "--size", "2x2"], &["size = 2x2", "from 16"]),
+        (&["record", "wave", "--out", "c.gif", "--size", "99999x99998"], &["99999", "from 1 to"]),
+        (&["record", "wave", "--out", "c.gif", "--from", "2", "--to", "1"], &["to = 1", "after the first picture"]),
+        (&["record", "wave", "--out", "c.exe"], &["out = c.exe", ".mp4 or .gif"]),
+        (&["record", "wave", "--out", "c.png"], &["out = c.png", "--screenshot"]),
+        (&["record", "wave", "--out", "none/c.gif"], &["out = none/c.gif", "a folder that exists"]),
+        (&["record", "wave", "--out", ".."], &["out = .."]),
+        (&["record", "wave", "--out", "/"], &["out = /"]),
+    ];
+    for (arguments, parts) in rows {
+        refused(None, arguments, parts);
+    }
+}
+
+#[test]
+fn commands_there_are_not() {
+    refused(None, &["fly"], &["unrecognized subcommand 'fly'", "--help"]);
+    refused(None, &["runn", "wave"], &["did you mean `run`?"]);
+    refused(None, &["list", "more"], &["more"]);
+    refused(None, &["check"], &["NAME|FILE"]);
+    refused(None, &["check", "nosuch"], &["experiment = nosuch"]);
+}
+
+#[test]
+fn a_newcomer_is_told_where_to_start() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = corpuscle(folder.path(), &[]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    assert!(output.stderr.is_empty());
+    assert!(text.lines().count() < 15, "short: {text}");
+    for part in ["corpuscle list", "corpuscle view", "corpuscle run", "corpuscle record", "--help", "brownian", "wave"] {
+        assert!(text.contains(part), "{text}");
+    }
+    // What it tells to type can be typed.
+    for line in text.lines().filter_map(|line| line.strip_prefix("  corpuscle ")) {
+        let words: Vec<&str> = line.split("  ").next().unwrap().split(' ').collect();
+        if words[0] == "list" || words[0] == "check" {
+            assert!(corpuscle(folder.path(), &words).status.success(), "{line}");
+        }
+    }
+    for arguments in [&["--help"][..], &["run", "--help"], &["help", "view"], &["--version"]] {
+        let output = corpuscle(folder.path(), arguments);
+        assert!(output.status.success() && output.stderr.is_empty() && !output.stdout.is_empty(), "{arguments:?}");
+    }
+}
+
+/// Places the system itself refuses, for root as well.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_place_that_cannot_be_written() {
     let folder = tempfile::tempdir().unwrap();
     for arguments in [
-        &["run"][..],
-        &["fly"],
-        &["run", "wave", "--set", "no-equals-sign"],
-        &["run", "wave", "--seed", "-1"],
-        &["run", "wave", "--threads", "0"],
-        &["run", "wave", "--duration", "NaN"],
-        &["view", "wave", "--size", "0x10"],
-        &["view", "wave", "--at", "soon"],
-        &["record", "wave"],
-        &["record", "wave", "--out", "clip.mp4", "--fps", "0"],
-        &["record", "wave", "--out", "clip.exe"],
-        &["record", "wave", "--out", "clip.mp4", "--size", "641x480"],
-        &["record", "wave", "--out", "clip.gif", "--from", "2", "--to", "1"],
+        &["run", "wave", "--out", "/proc/corpuscle"][..],
+        &["record", "wave", "--out", "/proc/clip.gif"],
+        &["record", "wave", "--out", "/proc/pictures/"],
+        &["view", "wave", "--screenshot", "/proc/wave.png"],
     ] {
         let output = corpuscle(folder.path(), arguments);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-        assert!(!output.stderr.is_empty());
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "{arguments:?} left something behind");
+        let complaint = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {complaint}");
+        assert_eq!(complaint.lines().count(), 1, "{complaint}");
+        assert!(complaint.contains(arguments[3].trim_end_matches('/')), "{complaint}");
+        assert!(!complaint.contains("partial") && !complaint.contains(".tmp"), "{complaint}");
     }
 }
 
@@ -119,13 +216,22 @@ fn an_output_that_is_taken() {
     fs::write(&file, "keep me").unwrap();
     fs::create_dir(folder.path().join("full")).unwrap();
     fs::write(folder.path().join("full/mine.txt"), "keep me").unwrap();
-    for (out, part) in [("taken", "this is a file"), ("full", "the folder is not empty")] {
+    for (out, part) in [("taken", "this is a file"), ("taken/sub", "this is a file"), ("full", "the folder is not empty")] {
         let output = corpuscle(folder.path(), &["run", "wave", "--out", out]);
         assert_eq!(output.status.code(), Some(2));
         assert!(String::from_utf8_lossy(&output.stderr).contains(part));
     }
-    let output = corpuscle(folder.path(), &["record", "wave", "--out", "full/mine.txt"]);
-    assert_eq!(output.status.code(), Some(2));
+    for arguments in [
+        &["record", "wave", "--out", "full/mine.txt"][..],
+        &["record", "wave", "--out", "full"],
+        &["record", "wave", "--out", "full", "--force"],
+        &["record", "wave", "--out", "taken"],
+        &["record", "wave", "--out", "taken", "--force"],
+        &["view", "wave", "--screenshot", "full"],
+        &["view", "wave", "--screenshot", "taken"],
+    ] {
+        assert_eq!(corpuscle(folder.path(), arguments).status.code(), Some(2), "{arguments:?}");
+    }
     assert_eq!(fs::read_to_string(&file).unwrap(), "keep me");
     assert_eq!(fs::read_dir(folder.path().join("full")).unwrap().count(), 1);
 }

@@ -1,6 +1,7 @@
 //! Whole runs through the real command: what they leave behind, that they can be repeated to the bit, and how they end.
 
 use std::fs;
+use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
@@ -127,21 +128,30 @@ fn a_reader_that_goes_away_is_no_fault() {
 #[cfg(unix)]
 #[test]
 fn a_signal_ends_a_run_cleanly_with_its_report() {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("gas.toml"), GAS.replace("duration = 20.0", "duration = 1e7\nsample_interval = 1e3")).unwrap();
-    let child = Command::new(env!("CARGO_BIN_EXE_corpuscle"))
-        .args(["run", "gas.toml", "--no-pictures", "--out", "out"])
-        .current_dir(folder.path())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    std::thread::sleep(std::time::Duration::from_secs(2));
-    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
-    let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(1), "{}", String::from_utf8_lossy(&output.stderr));
-    assert!(String::from_utf8(output.stdout).unwrap().contains("interrupted at t ="));
-    let out = folder.path().join("out");
-    assert_eq!(summary(&out)["ending"], "interrupted");
-    assert!(fs::read_to_string(out.join("report.html")).unwrap().contains("This run was interrupted."));
+    for signal in ["-INT", "-TERM"] {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("gas.toml"), GAS.replace("duration = 20.0", "duration = 1e7\nsample_interval = 1e3")).unwrap();
+        let mut child = Command::new(env!("CARGO_BIN_EXE_corpuscle"))
+            .args(["run", "gas.toml", "--no-pictures", "--out", "out"])
+            .current_dir(folder.path())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let out = folder.path().join("out");
+        // Its first line tells that it runs; a moment later it listens.
+        let mut stdout = BufReader::new(child.stdout.take().unwrap());
+        let mut text = String::new();
+        stdout.read_line(&mut text).unwrap();
+        std::thread::sleep(std::time::Duration::from_secs(1));
+        assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
+        stdout.read_to_string(&mut text).unwrap();
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(1), "{signal}: {}", String::from_utf8_lossy(&output.stderr));
+        assert!(String::from_utf8_lossy(&output.stderr).contains("stopping cleanly"));
+        assert!(text.contains("interrupted at t ="), "{text}");
+        let summary = summary(&out);
+        assert_eq!(summary["ending"], "interrupted");
+        assert!(fs::read_to_string(out.join("report.html")).unwrap().contains("This run was interrupted."));
+    }
 }

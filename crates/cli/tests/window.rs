@@ -16,7 +16,7 @@ struct Viewer(Option<Child>);
 impl Viewer {
     fn open(display: &Display, arguments: &[&str]) -> Self {
         let mut command = display.command(env!("CARGO_BIN_EXE_corpuscle"));
-        let child = command.args(["view", "--size", "720x480"]).args(arguments).stdout(Stdio::null()).stderr(Stdio::null()).spawn();
+        let child = command.args(["view", "--size", "720x480"]).args(arguments).stdout(Stdio::null()).spawn();
         let viewer = Self(Some(child.unwrap()));
         display.focus("Corpuscle");
         viewer

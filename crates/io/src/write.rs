@@ -99,13 +99,24 @@ impl Folder {
 pub fn atomically(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let write = || -> io::Result<()> {
-        let mut file = readable_by_others(tempfile::Builder::new().prefix(".corpuscle-").suffix(".tmp")).tempfile_in(folder)?;
+        let mut file = readable_by_others(tempfile::Builder::new().prefix(".corpuscle-").suffix(".tmp"))
+            .tempfile_in(folder)
+            .map_err(without_the_temporary_name)?;
         file.write_all(bytes)?;
         file.as_file().sync_all()?;
         file.persist(path)?;
         Ok(())
     };
     write().map_err(WriteError::system(path))
+}
+
+/// What the system said, without a name the user never gave.
+fn without_the_temporary_name(error: io::Error) -> io::Error {
+    let words = error.to_string();
+    match words.split_once(" at path ") {
+        Some((cause, _)) => io::Error::new(error.kind(), cause),
+        None => error,
+    }
 }
 
 /// Temporary files are private unless told otherwise; a report is to be shared as far as the user's mask allows.

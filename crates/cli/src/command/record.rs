@@ -21,6 +21,10 @@ use crate::trouble::Trouble;
 const SECONDS: f64 = 12.0;
 /// Longest clip: almost an hour at the usual rate, and numbered pictures have five digits.
 const MOST: f64 = 100_000.0;
+/// Shortest side of a film in H.264 that OpenH264 encodes.
+const SMALLEST: u32 = 16;
+/// Its longest sides, the shorter first.
+const LARGEST: [u32; 2] = [2160, 3840];
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -96,9 +100,16 @@ pub(crate) fn record(arguments: &Arguments, registry: Registry) -> Result<ExitCo
 
 /// A clip can be put where it is wanted, in a format there is.
 fn check_target(arguments: &Arguments) -> Result<(), Refusal> {
-    let (out, fps) = (arguments.out.display(), arguments.fps);
+    let (out, fps, Size { width, height }) = (arguments.out.display(), arguments.fps, arguments.size);
+    let (shorter, longer) = (width.min(height), width.max(height));
     match extension(&arguments.out).as_deref() {
         None | Some("mp4") if fps > 1000.0 => Err(refuse("fps", fps, "at most 1000 pictures in a second")),
+        Some("mp4") if shorter < SMALLEST || shorter > LARGEST[0] || longer > LARGEST[1] => {
+            let [short, long] = LARGEST;
+            let expected =
+                format!("sides from {SMALLEST} up to {long}x{short} or {short}x{long}, which is what the encoder can do");
+            Err(refuse("size", format!("{width}x{height}"), expected))
+        }
         Some("gif") if fps > 50.0 => Err(refuse("fps", fps, "at most 50 pictures in a second, which is what GIF can show")),
         None if arguments.out.is_file() => Err(refuse("out", out, "a name that ends in .mp4 or .gif, or a folder; this is a file")),
         None | Some("mp4" | "gif") => vacant("out", &arguments.out, arguments.force),

@@ -92,7 +92,7 @@ pub(crate) fn run(arguments: &Arguments, registry: Registry) -> Result<ExitCode,
 /// Whoever draws; nobody, with the reason and the remedy said, where OpenGL is missing.
 fn artist() -> Option<Artist> {
     let artist = Artist::new(SIZE, Palette::Dark).map(|artist| artist.enlarged(SCALE));
-    artist.map_err(|error| console::complain(&format!("the pictures are left out: {error}"))).ok()
+    artist.map_err(|error| console::complain(&format!("the pictures are left out: {}", Trouble::from(error)))).ok()
 }
 
 /// Runs the simulation to its end, or as far as it gets, with pictures on the way.
@@ -110,7 +110,7 @@ fn conduct<'a>(
         .map(|artist| artist.picture(simulation))
     {
         Some(Ok(picture)) => pictures.push(picture),
-        Some(Err(error)) => console::complain(&format!("a picture is left out: {error}")),
+        Some(Err(error)) => console::complain(&format!("a picture is left out: {}", Trouble::from(error))),
         None => {}
     };
     let mut moments: Vec<f64> = simulation.moments().into_iter().filter(|&moment| moment < end).collect();

@@ -41,9 +41,10 @@ impl Display {
     /// Starts a server on whatever display is free.
     pub(crate) fn start() -> Self {
         let folder = tempfile::tempdir().unwrap();
-        // `-displayfd 1`: the server chooses the number and prints it when it is ready.
+        // `-displayfd 1`: the server chooses the number and prints it when it is ready. `-noreset`: or it would start again
+        // whenever the last client leaves, and take those with it that are just arriving.
         let server = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-screen", "0", "720x480x24", "-nolisten", "tcp", "-fbdir"])
+            .args(["-displayfd", "1", "-screen", "0", "720x480x24", "-nolisten", "tcp", "-noreset", "-fbdir"])
             .arg(folder.path())
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
