@@ -136,9 +136,10 @@ impl Driver {
             *scene = Scene::default();
         }
         self.simulation.draw(scene);
+        // First what the viewer has just changed: a narrow window cuts the end.
+        let notice = if self.notice.is_empty() { String::new() } else { format!("{} · ", self.notice) };
         let pause = if self.paused { "paused · " } else { "" };
-        let more = if self.notice.is_empty() { String::new() } else { format!(" · {}", self.notice) };
-        scene.caption = format!("{} · {pause}speed {} a second{more}", scene.caption, significant(self.speed(), 3));
+        scene.caption = format!("{notice}{pause}speed {} a second · {}", significant(self.speed(), 3), scene.caption);
         true
     }
 
