@@ -5,6 +5,16 @@ use corpuscle_core::particles::ball_volume;
 use corpuscle_core::placement::{lattice, maxwell};
 use corpuscle_core::{Boundary, Invalid, Particles, Random, Vector};
 
+use crate::{Kind, Parameter};
+
+/// The dimension a gas lives in, a parameter of every experiment on one.
+pub(crate) const DIMENSION: Parameter = Parameter {
+    name: "dimension",
+    unit: "",
+    help: "Discs in the plane, or spheres in space.",
+    kind: Kind::Choice { default: "2", options: &["2", "3"] },
+};
+
 /// Particles of one kind, to be added to a gas.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Species {

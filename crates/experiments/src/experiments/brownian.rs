@@ -33,12 +33,7 @@ pub(crate) static EXPERIMENT: Experiment = Experiment {
 };
 
 static PARAMETERS: &[Parameter] = &[
-    Parameter {
-        name: "dimension",
-        unit: "",
-        help: "Discs in the plane or spheres in space.",
-        kind: Kind::Choice { default: "2", options: &["2", "3"] },
-    },
+    gas::DIMENSION,
     Parameter {
         name: "boundary",
         unit: "",

@@ -18,7 +18,7 @@ use corpuscle_observe::entropy::{Cells, equilibrium_entropy};
 use corpuscle_observe::{Chart, Check, Estimate, Schedule, theory};
 use corpuscle_scene::{Colour, Colouring, Label, Region, Scene};
 
-use crate::{Action, Experiment, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble};
+use crate::{Action, Experiment, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, gas};
 use room::{Process, Room, Sample};
 
 /// The registry's entry.
@@ -40,12 +40,7 @@ static PARAMETERS: &[Parameter] = &[
         help: "What is shown: a gas that expands into the empty half, or two gases that mix. Both are measured.",
         kind: Kind::Choice { default: "expansion", options: &["expansion", "mixing"] },
     },
-    Parameter {
-        name: "dimension",
-        unit: "",
-        help: "Discs in the plane or spheres in space.",
-        kind: Kind::Choice { default: "2", options: &["2", "3"] },
-    },
+    gas::DIMENSION,
     Parameter {
         name: "particles",
         unit: "",

@@ -34,12 +34,7 @@ pub(crate) static EXPERIMENT: Experiment = Experiment {
     dimensions: &[2, 3],
     engines: &["event-driven"],
     parameters: &[
-        Parameter {
-            name: "dimension",
-            unit: "",
-            help: "Discs in a square, or spheres in a cube.",
-            kind: Kind::Choice { default: "2", options: &["2", "3"] },
-        },
+        gas::DIMENSION,
         Parameter {
             name: "particles",
             unit: "",
