@@ -2,7 +2,9 @@
 
 use corpuscle_core::{Axis, Boundary, Vector};
 
-use crate::engine::EventDriven;
+use crate::engine::{Body, EventDriven};
+use crate::motion::Flight;
+use crate::plan::Plan;
 use crate::{Counts, Lazy, Rules};
 
 impl<const D: usize> EventDriven<D> {
@@ -28,43 +30,58 @@ impl<const D: usize> EventDriven<D> {
 
     /// Particle `i` at its own time: all a renderer needs to draw it at any time before its next event.
     pub fn lazy(&self, i: usize) -> Lazy<D> {
-        let flight = &self.flights[i];
+        let flight = &self.flights[self.slots[i] as usize];
         Lazy { position: flight.position, velocity: flight.velocity, time: self.epoch + flight.time }
     }
 
     /// Radius of particle `i`.
     pub fn radius(&self, i: usize) -> f64 {
-        self.flights[i].radius
+        self.flights[self.slots[i] as usize].radius
+    }
+
+    fn mass(&self, i: usize) -> f64 {
+        self.bodies[self.slots[i] as usize].mass
+    }
+
+    /// Bytes held in all, for everything that grows with the number of particles.
+    pub fn memory(&self) -> usize {
+        self.flights.capacity() * size_of::<Flight<D>>()
+            + self.plans.capacity() * size_of::<Plan>()
+            + self.bodies.capacity() * size_of::<Body<D>>()
+            + (self.met.capacity() + self.ids.capacity() + self.slots.capacity()) * size_of::<u32>()
+            + self.calendar.memory()
+            + self.neighbours.memory()
     }
 
     /// Position of particle `i` now, in the primary box.
     pub fn position(&self, i: usize) -> Vector<D> {
-        self.boundary.wrap(self.flights[i].position_at(self.now, self.rules.field))
+        self.boundary.wrap(self.flights[self.slots[i] as usize].position_at(self.now, self.rules.field))
     }
 
     /// Velocity of particle `i` now.
     pub fn velocity(&self, i: usize) -> Vector<D> {
-        self.flights[i].velocity_at(self.now, self.rules.field)
+        self.flights[self.slots[i] as usize].velocity_at(self.now, self.rules.field)
     }
 
     /// How often particle `i` went around the box upwards, less how often downwards, along each periodic axis, until
     /// its own last event.
     pub fn images(&self, i: usize) -> [i32; D] {
-        self.bodies[i].images
+        self.bodies[self.slots[i] as usize].images
     }
 
     /// Position of particle `i` now, counted on over periodic faces: what a mean squared displacement needs.
     pub fn unwrapped(&self, i: usize) -> Vector<D> {
         let side = self.boundary.extent();
-        let images = self.bodies[i].images;
+        let slot = self.slots[i] as usize;
+        let images = self.bodies[slot].images;
         let travelled =
             Vector::from_fn(|k| if self.boundary.axes[k] == Axis::Periodic { f64::from(images[k]) * side[k] } else { 0.0 });
-        self.flights[i].position_at(self.now, self.rules.field) + travelled
+        self.flights[slot].position_at(self.now, self.rules.field) + travelled
     }
 
     /// Total kinetic energy `sum m v^2 / 2` now.
     pub fn kinetic_energy(&self) -> f64 {
-        let energy = |i: usize| 0.5 * self.bodies[i].mass * self.velocity(i).norm_squared();
+        let energy = |i: usize| 0.5 * self.mass(i) * self.velocity(i).norm_squared();
         (0..self.flights.len()).map(energy).sum()
     }
 
@@ -72,12 +89,12 @@ impl<const D: usize> EventDriven<D> {
     ///
     /// Along a periodic axis a particle that falls around the box has fallen all the way.
     pub fn potential_energy(&self) -> f64 {
-        let energy = |i: usize| -self.bodies[i].mass * self.rules.field.dot(self.unwrapped(i));
+        let energy = |i: usize| -self.mass(i) * self.rules.field.dot(self.unwrapped(i));
         (0..self.flights.len()).map(energy).sum()
     }
 
     /// Total momentum `sum m v` now.
     pub fn momentum(&self) -> Vector<D> {
-        (0..self.flights.len()).fold(Vector::ZERO, |sum, i| sum + self.velocity(i) * self.bodies[i].mass)
+        (0..self.flights.len()).fold(Vector::ZERO, |sum, i| sum + self.velocity(i) * self.mass(i))
     }
 }

@@ -1,29 +1,26 @@
 //! Which particle's event comes next: a calendar queue with one entry a particle.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
-
 const NONE: u32 = u32::MAX;
-/// The event is due today and lies in the heap.
-const TODAY: u32 = u32::MAX - 1;
+/// Stands for the previous entry of one that is in no list.
+const OUT: u32 = u32::MAX - 1;
 
 /// A bounded-increasing priority queue (Paul, J. Comput. Phys. 221, 615 (2007), doi:10.1016/j.jcp.2006.06.042).
 ///
-/// Time is cut into days of equal width. The events of each of the coming `2^n` days form an unsorted list, threaded
-/// through the particles; only those of today are ordered, in a heap of a few entries. Events beyond the last day wait
-/// in one list that is sorted into days once a year of `2^n` days. Every operation is `O(1)` and allocates nothing.
-/// Events at the same time come in the order of their particles, so the sequence of events depends on no detail
-/// of the queue.
+/// Time is cut into days of equal width, about one event each. The events of each day of this year form an unsorted list,
+/// threaded through the particles; only those of today are sorted. Events after the end of the year wait in one list that
+/// is dealt out when the next year begins. Every operation is `O(1)` and allocates nothing. Events at the same time come
+/// in the order of their particles' ranks, so the sequence of events depends on no detail of the queue.
 #[derive(Clone, Debug)]
 pub(crate) struct Calendar {
     entries: Vec<Entry>,
+    /// Decides among events at the same time.
+    ranks: Vec<u32>,
     /// First particle of each day's list, then of the list of far events.
     heads: Vec<u32>,
-    /// Today's events by `(bits of the time, particle)`; the bits of non-negative numbers sort like the numbers.
-    /// An entry whose particle has been rescheduled stays, and is dropped when it comes up.
-    heap: BinaryHeap<Reverse<(u64, u32)>>,
+    /// Today's events, the latest first.
+    today: Vec<(f64, u32)>,
     days_per_time: f64,
-    today: u64,
+    day: u64,
     year_end: u64,
     /// How many events lie in lists of days, and how many beyond them.
     near: usize,
@@ -38,19 +35,19 @@ struct Entry {
     time: f64,
     next: u32,
     previous: u32,
-    list: u32,
 }
 
 impl Calendar {
     /// An empty calendar for this many particles.
     pub(crate) fn new(particles: usize) -> Self {
-        let days = (4 * particles).next_power_of_two().clamp(64, 1 << 30);
+        let days = (2 * particles).next_power_of_two().clamp(64, 1 << 30);
         Self {
-            entries: vec![Entry { time: f64::INFINITY, next: NONE, previous: NONE, list: NONE }; particles],
+            entries: vec![Entry { time: f64::INFINITY, next: NONE, previous: OUT }; particles],
+            ranks: (0..particles as u32).collect(),
             heads: vec![NONE; days + 1],
-            heap: BinaryHeap::new(),
+            today: Vec::with_capacity(64),
             days_per_time: 1.0,
-            today: 0,
+            day: 0,
             year_end: days as u64,
             near: 0,
             far: 0,
@@ -60,8 +57,10 @@ impl Calendar {
     }
 
     /// Replaces all entries, and fits the width of the days to them: one event a day on average.
-    pub(crate) fn fill(&mut self, now: f64, times: impl Iterator<Item = f64>) {
+    pub(crate) fn fill(&mut self, now: f64, times: impl Iterator<Item = f64>, ranks: &[u32]) {
+        self.ranks.copy_from_slice(ranks);
         for (entry, time) in self.entries.iter_mut().zip(times) {
+            // Adding zero turns a negative zero into a positive one.
             entry.time = time + 0.0;
         }
         self.fit(now);
@@ -76,23 +75,28 @@ impl Calendar {
             let median = *waits.select_nth_unstable_by(middle, f64::total_cmp).1;
             self.days_per_time = (count * std::f64::consts::LN_2 / median).clamp(1e-300, 1e300);
         }
-        self.heap.clear();
+        self.today.clear();
         self.heads.fill(NONE);
         (self.near, self.far, self.taken) = (0, 0, 0);
-        self.today = self.day_of(now);
-        self.fitted = self.today;
-        self.year_end = self.today.saturating_add(self.days());
+        self.day = self.day_of(now);
+        self.fitted = self.day;
+        self.year_end = self.day.saturating_add(self.days());
         for i in 0..self.entries.len() {
-            self.entries[i].list = NONE;
-            self.place(i as u32);
+            let time = self.entries[i].time;
+            if time < f64::INFINITY && self.day_of(time) <= self.day {
+                self.entries[i].previous = NONE;
+                self.today.push((time, i as u32));
+            } else {
+                self.place(i as u32);
+            }
         }
+        self.sort_today();
     }
 
     /// Sets the time of a particle's next event; infinity for none.
     #[inline]
     pub(crate) fn schedule(&mut self, i: u32, time: f64) {
         self.unlink(i);
-        // Adding zero turns a negative zero, which would sort last, into a positive one.
         self.entries[i as usize].time = time + 0.0;
         self.place(i);
     }
@@ -101,48 +105,68 @@ impl Calendar {
     #[inline]
     pub(crate) fn take(&mut self, until: f64) -> Option<(f64, u32)> {
         loop {
-            while let Some(&Reverse((bits, i))) = self.heap.peek() {
-                let (time, entry) = (f64::from_bits(bits), &mut self.entries[i as usize]);
-                if entry.list == TODAY && entry.time == time {
-                    if time > until {
-                        return None;
-                    }
-                    entry.list = NONE;
-                    self.heap.pop();
-                    self.taken += 1;
-                    return Some((time, i));
+            if let Some(&(time, i)) = self.today.last() {
+                if time > until {
+                    return None;
                 }
-                self.heap.pop();
+                self.today.pop();
+                self.entries[i as usize].previous = OUT;
+                self.taken += 1;
+                return Some((time, i));
             }
-            if self.near + self.far == 0 || self.today >= self.day_of(until) {
+            if self.near + self.far == 0 || self.day >= self.day_of(until) {
                 return None;
             }
             self.turn_the_page();
         }
     }
 
+    #[inline]
     fn turn_the_page(&mut self) {
-        self.today = if self.near == 0 { self.year_end } else { self.today + 1 };
-        if self.today >= self.year_end {
+        self.day = if self.near == 0 { self.year_end } else { self.day + 1 };
+        if self.day >= self.year_end {
             self.begin_year();
         }
-        let slot = (self.today & (self.days() - 1)) as usize;
+        let slot = (self.day & (self.days() - 1)) as usize;
         let mut i = std::mem::replace(&mut self.heads[slot], NONE);
         while i != NONE {
-            let entry = &mut self.entries[i as usize];
-            entry.list = TODAY;
-            self.heap.push(Reverse((entry.time.to_bits(), i)));
+            let entry = self.entries[i as usize];
+            self.today.push((entry.time, i));
             self.near -= 1;
             i = entry.next;
         }
+        self.sort_today();
+    }
+
+    /// The latest first.
+    #[inline]
+    fn sort_today(&mut self) {
+        if self.today.len() > 16 {
+            let ranks = &self.ranks;
+            self.today.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then_with(|| ranks[b.1 as usize].cmp(&ranks[a.1 as usize])));
+            return;
+        }
+        for sorted in 1..self.today.len() {
+            let mut at = sorted;
+            while at > 0 && self.before(self.today[at - 1], self.today[at]) {
+                self.today.swap(at - 1, at);
+                at -= 1;
+            }
+        }
+    }
+
+    #[inline]
+    fn before(&self, a: (f64, u32), b: (f64, u32)) -> bool {
+        a.0 < b.0 || (a.0 == b.0 && self.ranks[a.1 as usize] < self.ranks[b.1 as usize])
     }
 
     /// Every far event lies at or beyond the end of the last year: those of the new year go to their days.
+    #[cold]
     fn begin_year(&mut self) {
-        let days = self.today - self.fitted;
+        let days = self.day - self.fitted;
         if self.taken > 4 * days || (4 * self.taken < days && days > 4 * self.entries.len() as u64) {
             // Today is empty, and nothing is earlier.
-            self.fit(self.today as f64 / self.days_per_time);
+            self.fit(self.day as f64 / self.days_per_time);
             return;
         }
         let last = self.heads.len() - 1;
@@ -155,9 +179,9 @@ impl Calendar {
                 first = first.min(self.entries[j as usize].time);
                 j = self.entries[j as usize].next;
             }
-            self.today = self.today.max(self.day_of(first));
+            self.day = self.day.max(self.day_of(first));
         }
-        self.year_end = self.today.saturating_add(self.days());
+        self.year_end = self.day.saturating_add(self.days());
         self.far = 0;
         while i != NONE {
             let next = self.entries[i as usize].next;
@@ -180,16 +204,25 @@ impl Calendar {
     fn place(&mut self, i: u32) {
         let time = self.entries[i as usize].time;
         if time == f64::INFINITY {
-            self.entries[i as usize].list = NONE;
+            self.entries[i as usize].previous = OUT;
             return;
         }
         let day = self.day_of(time);
-        if day <= self.today {
-            self.entries[i as usize].list = TODAY;
-            self.heap.push(Reverse((time.to_bits(), i)));
+        if day <= self.day {
+            self.entries[i as usize].previous = NONE;
+            let at = if self.today.len() > 16 {
+                self.today.partition_point(|&later| !self.before(later, (time, i)))
+            } else {
+                let mut at = self.today.len();
+                while at > 0 && self.before(self.today[at - 1], (time, i)) {
+                    at -= 1;
+                }
+                at
+            };
+            self.today.insert(at, (time, i));
             return;
         }
-        let list = if day - self.today < self.days() {
+        let list = if day < self.year_end {
             self.near += 1;
             (day & (self.days() - 1)) as usize
         } else {
@@ -201,30 +234,45 @@ impl Calendar {
             self.entries[next as usize].previous = i;
         }
         let entry = &mut self.entries[i as usize];
-        (entry.list, entry.next, entry.previous) = (list as u32, next, NONE);
+        (entry.next, entry.previous) = (next, NONE);
     }
 
     #[inline]
     fn unlink(&mut self, i: u32) {
-        let Entry { next, previous, list, .. } = self.entries[i as usize];
-        if list >= TODAY {
-            self.entries[i as usize].list = NONE;
+        let Entry { time, next, previous } = self.entries[i as usize];
+        if previous == OUT {
+            return;
+        }
+        let day = self.day_of(time);
+        if day <= self.day {
+            if let Some(at) = self.today.iter().rposition(|&(_, j)| j == i) {
+                self.today.remove(at);
+            }
             return;
         }
         if next != NONE {
             self.entries[next as usize].previous = previous;
         }
-        if previous == NONE {
-            self.heads[list as usize] = next;
-        } else {
+        let near = day < self.year_end;
+        if previous != NONE {
             self.entries[previous as usize].next = next;
-        }
-        if list as usize == self.heads.len() - 1 {
-            self.far -= 1;
+        } else if near {
+            let slot = (day & (self.days() - 1)) as usize;
+            self.heads[slot] = next;
         } else {
-            self.near -= 1;
+            let last = self.heads.len() - 1;
+            self.heads[last] = next;
         }
-        self.entries[i as usize].list = NONE;
+        if near {
+            self.near -= 1;
+        } else {
+            self.far -= 1;
+        }
+    }
+
+    /// Bytes held.
+    pub(crate) fn memory(&self) -> usize {
+        self.entries.capacity() * size_of::<Entry>() + (self.ranks.capacity() + self.heads.capacity()) * size_of::<u32>()
     }
 }
 
@@ -248,7 +296,7 @@ mod tests {
             };
             let mut times: Vec<f64> = (0..n).map(|_| draw(0.0)).collect();
             let mut calendar = Calendar::new(n);
-            calendar.fill(0.0, times.iter().copied());
+            calendar.fill(0.0, times.iter().copied(), &(0..n as u32).collect::<Vec<_>>());
             let mut now = 0.0;
             for step in 0..20_000 {
                 let until = if step % 3 == 0 { now + 0.01 } else { f64::MAX };

@@ -3,6 +3,7 @@
 use corpuscle_core::{Contact, Meeting, Party};
 
 use crate::engine::EventDriven;
+use crate::search::Neighbour;
 
 impl<const D: usize> EventDriven<D> {
     /// Two particles touch, the second in a periodic image: each gets the impulse `J = (1 + e) mu |v.k|`, with the unit
@@ -10,9 +11,9 @@ impl<const D: usize> EventDriven<D> {
     ///
     /// The partner of lower index is the first, so the result does not depend on whose event it was.
     #[inline]
-    pub(crate) fn collide<const FIELD: bool>(&mut self, i: usize, j: usize, image: [i8; D]) -> Contact<D> {
-        let shift = self.grid.shift(image);
-        let (i, j, shift) = if i < j { (i, j, shift) } else { (j, i, -shift) };
+    pub(crate) fn collide<const FIELD: bool>(&mut self, i: usize, partner: Neighbour) -> Contact<D> {
+        let (j, shift) = (partner.slot(), self.images.shift(partner));
+        let (i, j, shift) = if self.ids[i] < self.ids[j] { (i, j, shift) } else { (j, i, -shift) };
         self.counts.collisions += 1;
         self.count_stuck(i);
         self.count_stuck(j);
@@ -46,11 +47,11 @@ impl<const D: usize> EventDriven<D> {
     }
 
     /// A particle touches a fixed surface: `J = (1 + e) m |v.k|`.
-    pub(crate) fn bounce<const FIELD: bool>(&mut self, i: usize, number: usize) -> Contact<D> {
+    pub(crate) fn bounce<const FIELD: bool>(&mut self, i: usize) -> Contact<D> {
         self.counts.wall_collisions += 1;
         self.count_stuck(i);
         self.settle(i);
-        let surface = &self.surfaces[number];
+        let surface = &self.surfaces[self.met[i] as usize];
         surface.align(&mut self.flights[i]);
         let (k, distance) = surface.normal(self.flights[i].position);
         let with = surface.meeting;
@@ -73,12 +74,12 @@ impl<const D: usize> EventDriven<D> {
     }
 
     #[inline]
-    fn stamp(&mut self, i: usize) {
+    pub(crate) fn stamp(&mut self, i: usize) {
         self.plans[i].stamp = self.plans[i].stamp.wrapping_add(1);
     }
 
     #[inline]
-    fn plan_and_schedule<const FIELD: bool>(&mut self, i: usize) {
+    pub(crate) fn plan_and_schedule<const FIELD: bool>(&mut self, i: usize) {
         self.plan::<FIELD>(i);
         self.calendar.schedule(i as u32, self.plans[i].next_time());
     }
@@ -86,12 +87,13 @@ impl<const D: usize> EventDriven<D> {
     /// Counts contacts at the same instant: in an inelastic collapse the clock stops.
     #[inline]
     fn count_stuck(&mut self, i: usize) {
-        self.plans[i].stuck = if self.flights[i].time == self.now { self.plans[i].stuck + 1 } else { 0 };
+        self.plans[i].stuck = if self.flights[i].time == self.now { self.plans[i].stuck.saturating_add(1) } else { 0 };
     }
 
     #[inline]
-    fn party(&self, index: usize, before: corpuscle_core::Vector<D>) -> Party<D> {
-        let flight = &self.flights[index];
-        Party { index, mass: self.bodies[index].mass, position: flight.position, before, after: flight.velocity }
+    fn party(&self, i: usize, before: corpuscle_core::Vector<D>) -> Party<D> {
+        let flight = &self.flights[i];
+        let position = self.boundary.wrap(flight.position);
+        Party { index: self.ids[i] as usize, mass: self.bodies[i].mass, position, before, after: flight.velocity }
     }
 }

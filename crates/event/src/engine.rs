@@ -5,9 +5,11 @@ use std::ops::ControlFlow;
 use corpuscle_core::{Axis, Boundary, Engine, Failure, Invalid, Observer, Particles, Vector};
 
 use crate::calendar::Calendar;
-use crate::grid::{Candidates, Grid};
 use crate::motion::Flight;
+use crate::neighbours::{Candidates, Neighbours};
+use crate::order::place_on_curve;
 use crate::plan::Plan;
+use crate::search::{Images, Instructions, Neighbour};
 use crate::surface::{Surface, surfaces};
 use crate::{Counts, Rules};
 
@@ -41,10 +43,17 @@ pub struct EventDriven<const D: usize> {
     pub(crate) boundary: Boundary<D>,
     pub(crate) rules: Rules<D>,
     pub(crate) flights: Vec<Flight<D>>,
-    pub(crate) plans: Vec<Plan<D>>,
+    pub(crate) plans: Vec<Plan>,
     pub(crate) bodies: Vec<Body<D>>,
-    pub(crate) grid: Grid<D>,
+    /// Number of the surface each particle meets next; empty if there are none.
+    pub(crate) met: Vec<u32>,
+    /// Particles are stored in the order of a curve through the box: who is in each place, and the place of each.
+    pub(crate) ids: Vec<u32>,
+    pub(crate) slots: Vec<u32>,
+    pub(crate) neighbours: Neighbours<D>,
     pub(crate) candidates: Candidates,
+    pub(crate) images: Images<D>,
+    pub(crate) instructions: Instructions,
     pub(crate) surfaces: Vec<Surface<D>>,
     pub(crate) calendar: Calendar,
     /// Times in flights, plans and calendar count from here, so that they stay small and fine.
@@ -65,7 +74,7 @@ pub(crate) struct Body<const D: usize> {
 }
 
 /// A particle may have this many contacts at one instant before the clock counts as stalled.
-const STUCK: u32 = 10_000;
+const STUCK: u16 = 10_000;
 
 impl<const D: usize> EventDriven<D> {
     /// An engine at time 0.
@@ -83,8 +92,8 @@ impl<const D: usize> EventDriven<D> {
                 "a positive mass: collisions need inertia",
             ));
         }
-        if particles.len() >= 1 << 30 {
-            return Err(Invalid::new("particles", particles.len(), "fewer than 2^30"));
+        if particles.len() >= Neighbour::LIMIT {
+            return Err(Invalid::new("particles", particles.len(), format!("fewer than {}", Neighbour::LIMIT)));
         }
         let flight = |i: usize| Flight {
             position: boundary.wrap(particles.position[i]),
@@ -95,13 +104,20 @@ impl<const D: usize> EventDriven<D> {
         let body = |i: usize| Body { mass: particles.mass[i], images: [0; D], species: particles.species[i] };
         let n = particles.len();
         let flights: Vec<_> = (0..n).map(flight).collect();
+        let images = Images::new(boundary.extent());
+        let mut candidates = Candidates::default();
         let mut engine = Self {
-            grid: Grid::new(&boundary, |i| flights[i].position, &particles.radius),
-            candidates: Candidates::default(),
+            neighbours: Neighbours::new(&boundary, &[], |_| Vector::ZERO, &images, &mut candidates),
+            candidates,
+            images,
+            instructions: Instructions::of_this_processor(),
             surfaces: surfaces(&boundary),
             flights,
             plans: vec![Plan::IDLE; n],
             bodies: (0..n).map(body).collect(),
+            met: vec![],
+            ids: (0..n as u32).collect(),
+            slots: (0..n as u32).collect(),
             calendar: Calendar::new(n),
             boundary,
             rules,
@@ -112,7 +128,7 @@ impl<const D: usize> EventDriven<D> {
             next_epoch: 0,
         };
         engine.next_epoch = engine.contacts_per_epoch();
-        engine.plan_all();
+        engine.begin_anew();
         Ok(engine)
     }
 
@@ -126,10 +142,10 @@ impl<const D: usize> EventDriven<D> {
             self.settle(i);
             self.flights[i].position = boundary.wrap(self.flights[i].position);
         }
+        self.images = Images::new(boundary.extent());
         self.boundary = boundary;
         self.surfaces = surfaces(&self.boundary);
-        self.rebuild_grid();
-        self.plan_all();
+        self.begin_anew();
         Ok(())
     }
 
@@ -140,11 +156,12 @@ impl<const D: usize> EventDriven<D> {
 
     /// Changes velocities now: `change(index, velocity)` is called for every particle and must leave finite numbers.
     pub fn set_velocities(&mut self, mut change: impl FnMut(usize, &mut Vector<D>)) {
-        for i in 0..self.flights.len() {
+        for id in 0..self.slots.len() {
+            let i = self.slots[id] as usize;
             self.settle(i);
-            change(i, &mut self.flights[i].velocity);
+            change(id, &mut self.flights[i].velocity);
         }
-        self.plan_all();
+        self.begin_anew();
     }
 
     /// Moves the centre of one particle, now.
@@ -159,16 +176,10 @@ impl<const D: usize> EventDriven<D> {
         let target = particles.position[index] + shift;
         particles.position[index] = self.boundary.wrap(target);
         self.boundary.validate_particles(&particles)?;
-        self.settle(index);
-        self.flights[index].position = particles.position[index];
-        for k in 0..D {
-            if self.boundary.axes[k] == Axis::Periodic {
-                let side = self.boundary.upper[k] - self.boundary.lower[k];
-                self.bodies[index].images[k] += ((target[k] - particles.position[index][k]) / side).round() as i32;
-            }
-        }
-        self.rebuild_grid();
-        self.plan_all();
+        let i = self.slots[index] as usize;
+        self.settle(i);
+        self.flights[i].position = target;
+        self.begin_anew();
         Ok(())
     }
 
@@ -178,10 +189,48 @@ impl<const D: usize> EventDriven<D> {
         self.flights[i].bring_to(self.now, self.rules.field);
     }
 
-    fn rebuild_grid(&mut self) {
+    /// Brings a particle that is beyond a periodic face back into the box; says whether it was.
+    pub(crate) fn wrap(&mut self, i: usize) -> bool {
+        let mut wrapped = false;
+        for k in 0..D {
+            if self.boundary.axes[k] == Axis::Periodic {
+                let (lower, upper) = (self.boundary.lower[k], self.boundary.upper[k]);
+                let now = self.flights[i].position_at(self.now, self.rules.field)[k];
+                if now < lower || now >= upper {
+                    let turns = ((now - lower) / (upper - lower)).floor();
+                    self.flights[i].position[k] -= turns * (upper - lower);
+                    self.bodies[i].images[k] += turns as i32;
+                    wrapped = true;
+                }
+            }
+        }
+        wrapped
+    }
+
+    /// Sorts the particles in memory, looks for all their neighbours and plans everything anew.
+    fn begin_anew(&mut self) {
+        for i in 0..self.flights.len() {
+            self.wrap(i);
+        }
+        self.sort();
         let (flights, now, field) = (&self.flights, self.now, self.rules.field);
-        let radii: Vec<f64> = flights.iter().map(|flight| flight.radius).collect();
-        self.grid = Grid::new(&self.boundary, |i| flights[i].position_at(now, field), &radii);
+        self.neighbours =
+            Neighbours::new(&self.boundary, flights, |i| flights[i].position_at(now, field), &self.images, &mut self.candidates);
+        self.plan_all();
+    }
+
+    /// Brings particles that are near each other in space near each other in memory.
+    fn sort(&mut self) {
+        let place = |i: usize| place_on_curve(&self.boundary, self.flights[i].position_at(self.now, self.rules.field));
+        let mut order: Vec<(u64, u32)> = (0..self.flights.len()).map(|i| (place(i), i as u32)).collect();
+        order.sort_unstable_by_key(|&(place, i)| (place, self.ids[i as usize]));
+        arrange(&mut self.flights, &order);
+        arrange(&mut self.plans, &order);
+        arrange(&mut self.bodies, &order);
+        arrange(&mut self.ids, &order);
+        for (slot, &id) in self.ids.iter().enumerate() {
+            self.slots[id as usize] = slot as u32;
+        }
     }
 
     fn contacts_per_epoch(&self) -> u64 {
@@ -198,30 +247,28 @@ impl<const D: usize> EventDriven<D> {
         for flight in &mut self.flights {
             flight.time -= shift;
         }
-        self.plan_all();
+        self.begin_anew();
     }
 
     fn run<const FIELD: bool, O: Observer<D>>(&mut self, to: f64, observer: &mut O) -> Result<ControlFlow<()>, Failure> {
         while let Some((time, i)) = self.calendar.take(to - self.epoch) {
             self.now = time;
             let i = i as usize;
-            let plan = self.plans[i];
-            let contact = if plan.pair_time == time {
-                let j = plan.partner as usize;
-                if self.plans[j].stamp != plan.partner_stamp {
-                    self.counts.stale += 1;
-                    self.plan_pair::<FIELD>(i);
-                    self.calendar.schedule(i as u32, self.plans[i].next_time());
+            let plan = &self.plans[i];
+            let contact = if plan.pair.time == time {
+                let partner = plan.pair.neighbour;
+                if self.plans[partner.slot()].stamp != plan.pair_stamp {
+                    self.replace_stale::<FIELD>(i);
                     continue;
                 }
-                self.collide::<FIELD>(i, j, plan.image)
+                self.collide::<FIELD>(i, partner)
             } else if plan.surface_time == time {
-                self.bounce::<FIELD>(i, plan.surface as usize)
+                self.bounce::<FIELD>(i)
             } else {
-                self.leave_cell::<FIELD>(i, plan.exit);
+                self.leave::<FIELD>(i);
                 continue;
             };
-            if self.plans[contact.first.index].stuck > STUCK {
+            if self.plans[self.slots[contact.first.index] as usize].stuck > STUCK {
                 self.time = contact.time;
                 return Err(Failure {
                     time: contact.time,
@@ -243,6 +290,11 @@ impl<const D: usize> EventDriven<D> {
         }
         Ok(ControlFlow::Continue(()))
     }
+}
+
+/// Puts items into an order.
+fn arrange<T: Copy>(items: &mut Vec<T>, order: &[(u64, u32)]) {
+    *items = order.iter().map(|&(_, i)| items[i as usize]).collect();
 }
 
 /// The largest power of two not above a positive normal number: its exponent with an empty mantissa.
@@ -278,10 +330,10 @@ impl<const D: usize> Engine<D> for EventDriven<D> {
         particles.velocity.clear();
         particles.velocity.extend((0..n).map(|i| self.velocity(i)));
         particles.mass.clear();
-        particles.mass.extend(self.bodies.iter().map(|body| body.mass));
+        particles.mass.extend(self.slots.iter().map(|&i| self.bodies[i as usize].mass));
         particles.radius.clear();
-        particles.radius.extend(self.flights.iter().map(|flight| flight.radius));
+        particles.radius.extend(self.slots.iter().map(|&i| self.flights[i as usize].radius));
         particles.species.clear();
-        particles.species.extend(self.bodies.iter().map(|body| body.species));
+        particles.species.extend(self.slots.iter().map(|&i| self.bodies[i as usize].species));
     }
 }

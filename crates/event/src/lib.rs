@@ -24,11 +24,14 @@ mod access;
 mod calendar;
 mod collide;
 mod engine;
-mod grid;
+mod lanes;
 mod motion;
+mod neighbours;
+mod order;
 mod plan;
 mod predict;
 mod rules;
+mod search;
 mod surface;
 
 pub use engine::EventDriven;

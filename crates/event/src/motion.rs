@@ -4,15 +4,29 @@ use corpuscle_core::Vector;
 
 /// A particle in free flight, as it was at its own time: what pair prediction reads, one cache line in 3-D.
 #[derive(Clone, Copy, Debug)]
-#[repr(align(64))]
+#[repr(C, align(64))] // the order of the fields is that of `number`
 pub(crate) struct Flight<const D: usize> {
     pub(crate) position: Vector<D>,
-    pub(crate) velocity: Vector<D>,
     pub(crate) time: f64,
+    pub(crate) velocity: Vector<D>,
     pub(crate) radius: f64,
 }
 
 impl<const D: usize> Flight<D> {
+    /// One of the `2 D + 2` numbers, in the order position, time, velocity, radius.
+    #[inline]
+    pub(crate) fn number(&self, index: usize) -> f64 {
+        if index < D {
+            self.position[index]
+        } else if index == D {
+            self.time
+        } else if index <= 2 * D {
+            self.velocity[index - D - 1]
+        } else {
+            self.radius
+        }
+    }
+
     /// `r + v t + g t^2 / 2`, with `t` counted from the particle's own time.
     #[inline]
     pub(crate) fn position_at(&self, time: f64, field: Vector<D>) -> Vector<D> {

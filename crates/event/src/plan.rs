@@ -1,52 +1,68 @@
 //! What a particle is going to do next.
 
+use crate::search::Meet;
+
 /// The next events of one particle: its earliest collision with another, and what it meets alone.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
-pub(crate) struct Plan<const D: usize> {
-    /// When it collides with `partner` in the periodic image `image`, if the partner's `stamp` is still the same.
-    pub(crate) pair_time: f64,
+pub(crate) struct Plan {
+    /// Its earliest collision, if the partner's stamp is still `pair_stamp`.
+    pub(crate) pair: Meet,
+    pub(crate) pair_stamp: u32,
     /// When it touches the fixed surface of index `surface`.
     pub(crate) surface_time: f64,
-    /// When it leaves its cell.
+    /// When it leaves its cell, or its box.
     pub(crate) exit_time: f64,
-    pub(crate) partner: u32,
-    pub(crate) partner_stamp: u32,
+    pub(crate) exit: Exit,
+    /// How many contacts it has had at the same instant.
+    pub(crate) stuck: u16,
     /// Counts the changes of this particle's flight.
     pub(crate) stamp: u32,
-    pub(crate) surface: u32,
-    /// How many contacts it has had at the same instant.
-    pub(crate) stuck: u32,
-    pub(crate) image: [i8; D],
-    pub(crate) exit: Exit,
+}
+
+impl Plan {
+    pub(crate) const IDLE: Self = Self {
+        pair: Meet::NEVER,
+        pair_stamp: 0,
+        surface_time: f64::INFINITY,
+        exit_time: f64::INFINITY,
+        exit: Exit(0),
+        stuck: 0,
+        stamp: 0,
+    };
+
+    /// Time of the earliest event.
+    #[inline]
+    pub(crate) fn next_time(&self) -> f64 {
+        let alone = if self.exit_time < self.surface_time { self.exit_time } else { self.surface_time };
+        if self.pair.time < alone { self.pair.time } else { alone }
+    }
 }
 
 /// Through which face a particle leaves its cell.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Exit {
-    pub(crate) axis: u8,
-    pub(crate) up: bool,
-    /// The face is a periodic face of the box.
-    pub(crate) around: bool,
-}
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Exit(u16);
 
-impl<const D: usize> Plan<D> {
-    pub(crate) const IDLE: Self = Self {
-        pair_time: f64::INFINITY,
-        surface_time: f64::INFINITY,
-        exit_time: f64::INFINITY,
-        partner: u32::MAX,
-        partner_stamp: 0,
-        stamp: 0,
-        surface: 0,
-        stuck: 0,
-        image: [0; D],
-        exit: Exit { axis: 0, up: false, around: false },
-    };
-
-    /// Time of the earliest.
+impl Exit {
+    /// `level`: the class of sizes in whose grid the cell is; `around`: the face is a periodic face of the box.
     #[inline]
-    pub(crate) fn next_time(&self) -> f64 {
-        self.pair_time.min(self.surface_time).min(self.exit_time)
+    pub(crate) fn new(level: usize, axis: usize, up: bool, around: bool) -> Self {
+        Self((level << 8 | axis << 2 | usize::from(up) << 1 | usize::from(around)) as u16)
+    }
+    #[inline]
+    pub(crate) fn level(self) -> usize {
+        usize::from(self.0 >> 8)
+    }
+    #[inline]
+    pub(crate) fn axis(self) -> usize {
+        usize::from(self.0 >> 2 & 0x3f)
+    }
+    #[inline]
+    pub(crate) fn up(self) -> bool {
+        self.0 & 2 != 0
+    }
+    #[inline]
+    pub(crate) fn around(self) -> bool {
+        self.0 & 1 != 0
     }
 }

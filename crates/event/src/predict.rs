@@ -1,72 +1,16 @@
 //! Planning: what a particle is going to meet, and when.
 
-use corpuscle_core::Vector;
-
 use crate::engine::EventDriven;
-use crate::grid::{Candidates, Neighbourhood};
-use crate::motion::{Flight, contact_delay, upward_passage};
+use crate::motion::upward_passage;
+use crate::neighbours::Neighbours;
 use crate::plan::{Exit, Plan};
-
-/// The search for the earliest collision of one particle.
-struct Search<const D: usize> {
-    index: u32,
-    me: Flight<D>,
-    field: Vector<D>,
-    time: f64,
-    partner: u32,
-    image: [i8; D],
-}
-
-impl<const D: usize> Search<D> {
-    /// Whether another particle in one of its periodic images comes to contact at all: a test without branches.
-    ///
-    /// The states are compared at the later of the two own times. Every operation is odd under exchange of the two
-    /// particles, so the time found is the same bits whichever of them is searched for.
-    #[inline]
-    fn may_meet<const FIELD: bool, const FRESH: bool>(&self, other: &Flight<D>, shift: Vector<D>) -> bool {
-        let (_, r, v) = self.approach::<FIELD, FRESH>(other, shift);
-        let s = self.me.radius + other.radius;
-        let b = r.dot(v);
-        let c = r.norm_squared() - s * s;
-        // Not `&&`: without branches the tests of many candidates overlap.
-        (b < 0.0) & (b * b - v.norm_squared() * c >= 0.0)
-    }
-
-    /// The later of the two own times, and the distance and relative velocity then.
-    #[inline]
-    fn approach<const FIELD: bool, const FRESH: bool>(&self, other: &Flight<D>, shift: Vector<D>) -> (f64, Vector<D>, Vector<D>) {
-        let me = &self.me;
-        // A particle that has just collided is at the later time.
-        let reference = if FRESH { me.time } else { me.time.max(other.time) };
-        let (mine, its) = (reference - me.time, reference - other.time);
-        if FIELD {
-            let (r1, r2) = (me.position_at(reference, self.field), other.position_at(reference, self.field));
-            (reference, r2 - r1 + shift, other.velocity_at(reference, self.field) - me.velocity_at(reference, self.field))
-        } else {
-            let r1 = if FRESH { me.position } else { me.position + me.velocity * mine };
-            let r2 = other.position + other.velocity * its;
-            (reference, r2 - r1 + shift, other.velocity - me.velocity)
-        }
-    }
-
-    /// Tests another particle in one of its periodic images.
-    #[inline]
-    fn consider<const FIELD: bool>(&mut self, j: u32, other: &Flight<D>, shift: Vector<D>, image: [i8; D]) {
-        if j == self.index {
-            return;
-        }
-        let (reference, r, v) = self.approach::<FIELD, false>(other, shift);
-        let s = self.me.radius + other.radius;
-        let time = reference + contact_delay(r, v, s, self.time - reference);
-        if (time < self.time || (time == self.time && j < self.partner)) && s > 0.0 && time < f64::INFINITY {
-            (self.time, self.partner, self.image) = (time, j, image);
-        }
-    }
-}
+use crate::search::{Meet, Neighbour, View, home};
+use corpuscle_core::Vector;
 
 impl<const D: usize> EventDriven<D> {
     /// Plans everything anew, for all particles.
     pub(crate) fn plan_all(&mut self) {
+        self.met.resize(if self.surfaces.is_empty() { 0 } else { self.flights.len() }, 0);
         for plan in &mut self.plans {
             plan.stamp = plan.stamp.wrapping_add(1);
             plan.surface_time = f64::INFINITY;
@@ -78,7 +22,7 @@ impl<const D: usize> EventDriven<D> {
                 self.plan::<true>(i);
             }
         }
-        self.calendar.fill(self.now, self.plans.iter().map(Plan::next_time));
+        self.calendar.fill(self.now, self.plans.iter().map(Plan::next_time), &self.ids);
     }
 
     /// The state of a particle has changed: plans all it is going to do.
@@ -86,90 +30,88 @@ impl<const D: usize> EventDriven<D> {
         self.plan_pair::<FIELD>(i);
         self.plan_exit::<FIELD>(i);
         if !self.surfaces.is_empty() {
-            let flight = &self.flights[i];
-            let (mut delay, mut nearest) = (f64::INFINITY, 0);
-            for (number, surface) in self.surfaces.iter().enumerate() {
-                let candidate = surface.contact_delay(flight, self.rules.field);
-                if candidate < delay {
-                    (delay, nearest) = (candidate, number);
-                }
-            }
-            let plan = &mut self.plans[i];
-            (plan.surface_time, plan.surface) = ((flight.time + delay).max(self.now), nearest as u32);
+            self.plan_surface(i);
         }
     }
 
-    /// Searches the whole neighbourhood for the next collision.
+    fn plan_surface(&mut self, i: usize) {
+        let flight = &self.flights[i];
+        let (mut delay, mut nearest) = (f64::INFINITY, 0);
+        for (number, surface) in self.surfaces.iter().enumerate() {
+            let candidate = surface.contact_delay(flight, self.rules.field);
+            if candidate < delay {
+                (delay, nearest) = (candidate, number);
+            }
+        }
+        (self.plans[i].surface_time, self.met[i]) = ((flight.time + delay).max(self.now), nearest as u32);
+    }
+
+    /// Searches all neighbours for the next collisions.
+    #[inline]
     pub(crate) fn plan_pair<const FIELD: bool>(&mut self, i: usize) {
         self.counts.predictions += 1;
-        let mut search = self.search(i, f64::INFINITY, u32::MAX, [0; D]);
-        let flights = &self.flights;
-        if let Some(number) = self.grid.is_large(i as u32) {
-            self.grid.visit_reach(number, |j, shift, image| search.consider::<FIELD>(j, &flights[j as usize], shift, image));
-        } else {
-            let around = self.grid.neighbourhood(i as u32);
-            self.grid.collect_around(&around, &mut self.candidates);
-            self.choose::<FIELD>(&mut search, &around);
-        }
-        let flights = &self.flights;
-        self.grid.visit_large(|j, shift, image| search.consider::<FIELD>(j, &flights[j as usize], shift, image));
-        self.keep(i, &search);
-    }
-
-    /// Finds the earliest collision among the candidates: first, without a branch, who comes to contact at all, then when.
-    fn choose<const FIELD: bool>(&mut self, search: &mut Search<D>, around: &Neighbourhood<D>) {
-        let count = match (search.me.time == self.now, around.inside) {
-            (true, true) => self.filter::<FIELD, true, true>(search, around),
-            (true, false) => self.filter::<FIELD, true, false>(search, around),
-            (false, true) => self.filter::<FIELD, false, true>(search, around),
-            (false, false) => self.filter::<FIELD, false, false>(search, around),
+        let (words, images) = match &self.neighbours {
+            Neighbours::Lists(lists) => lists.neighbours(i),
+            Neighbours::Cells(cells) => {
+                cells.collect(i, &mut self.candidates);
+                let images = self.candidates.images;
+                (self.candidates.padded(Neighbour::new(i as u32, home::<D>())), images)
+            }
         };
-        for &number in &self.candidates.chosen[..count] {
-            let (j, cell) = (self.candidates.index[number as usize], self.candidates.cell[number as usize]);
-            let (image, shift) = if around.inside { ([0; D], Vector::ZERO) } else { around.image(cell) };
-            search.consider::<FIELD>(j, &self.flights[j as usize], shift, image);
-        }
+        let view = View { flights: &self.flights, images: &self.images, field: self.rules.field };
+        let found = search::<D, FIELD>(&view, self.instructions, &self.ids, i, self.now, words, images);
+        self.keep(i, found);
     }
 
-    fn filter<const FIELD: bool, const FRESH: bool, const INSIDE: bool>(
-        &mut self,
-        search: &Search<D>,
-        around: &Neighbourhood<D>,
-    ) -> usize {
-        let Candidates { index, cell, count, chosen } = &mut self.candidates;
-        let (index, cell, chosen) = (&index[..*count], &cell[..*count], &mut chosen[..*count]);
-        let mut met = 0;
-        for number in 0..*count {
-            let shift = if INSIDE { Vector::ZERO } else { around.image(cell[number]).1 };
-            chosen[met] = number as u32;
-            met += usize::from(search.may_meet::<FIELD, FRESH>(&self.flights[index[number] as usize], shift));
-        }
-        met
-    }
-
-    fn search(&self, i: usize, time: f64, partner: u32, image: [i8; D]) -> Search<D> {
-        Search { index: i as u32, me: self.flights[i], field: self.rules.field, time, partner, image }
-    }
-
-    /// An event cannot be in the past: what rounding puts there happens now.
-    fn keep(&mut self, i: usize, search: &Search<D>) {
-        let stamp = self.plans.get(search.partner as usize).map_or(0, |partner| partner.stamp);
+    /// What rounding puts into the past happens now.
+    #[inline]
+    fn keep(&mut self, i: usize, found: Meet) {
+        let stamp = self.plans.get(found.neighbour.slot()).map_or(0, |plan| plan.stamp);
         let plan = &mut self.plans[i];
-        plan.pair_time = search.time.max(self.now);
-        (plan.partner, plan.partner_stamp, plan.image) = (search.partner, stamp, search.image);
+        let time = if found.time < self.now { self.now } else { found.time };
+        (plan.pair, plan.pair_stamp) = (Meet { time, ..found }, stamp);
     }
 
-    /// Plans through which face the particle leaves its cell, and when.
+    /// The partner of the event that came up has collided with another meanwhile.
+    #[inline]
+    pub(crate) fn replace_stale<const FIELD: bool>(&mut self, i: usize) {
+        self.counts.stale += 1;
+        self.plan_pair::<FIELD>(i);
+        self.calendar.schedule(i as u32, self.plans[i].next_time());
+    }
+
+    /// Plans through which face the particle leaves its cell or its box, and when.
     ///
     /// An upper face is left only while moving up and a lower one while moving down, so a particle that rounding has put
     /// on the wrong side of a face does not go back and forth.
+    #[inline]
     pub(crate) fn plan_exit<const FIELD: bool>(&mut self, i: usize) {
+        let mut best = (f64::INFINITY, Exit::new(0, 0, false, false));
+        match &self.neighbours {
+            Neighbours::Lists(lists) => self.consider_exit::<FIELD>(i, 0, |axis, up| (lists.face(i, axis, up), false), &mut best),
+            Neighbours::Cells(cells) => {
+                for level in 0..cells.levels(i) {
+                    self.consider_exit::<FIELD>(i, level, |axis, up| cells.face(i, level, axis, up), &mut best);
+                }
+            }
+        }
+        let time = if best.0 < self.now { self.now } else { best.0 };
+        (self.plans[i].exit_time, self.plans[i].exit) = (time, best.1);
+    }
+
+    #[inline]
+    fn consider_exit<const FIELD: bool>(
+        &self,
+        i: usize,
+        level: usize,
+        face: impl Fn(usize, bool) -> (f64, bool),
+        best: &mut (f64, Exit),
+    ) {
         let (flight, field, now) = (&self.flights[i], self.rules.field, self.now);
-        let (mut earliest, mut exit) = (f64::INFINITY, Exit::default());
         for axis in 0..D {
             if FIELD && field[axis] != 0.0 {
                 for up in [false, true] {
-                    let (face, around) = self.grid.exit(i as u32, axis, up);
+                    let (face, around) = face(axis, up);
                     if face.is_infinite() {
                         continue;
                     }
@@ -180,57 +122,116 @@ impl<const D: usize> EventDriven<D> {
                     let (r, v) = (flight.position_at(from, field)[axis], flight.velocity_at(from, field)[axis]);
                     let sign = if up { 1.0 } else { -1.0 };
                     let time = from + upward_passage(sign * (face - r), sign * v, sign * field[axis]);
-                    if time < earliest {
-                        (earliest, exit) = (time, Exit { axis: axis as u8, up, around });
+                    if time < best.0 {
+                        *best = (time, Exit::new(level, axis, up, around));
                     }
                 }
             } else {
                 let v = flight.velocity[axis];
-                if v == 0.0 {
-                    continue;
-                }
-                let (face, around) = self.grid.exit(i as u32, axis, v > 0.0);
-                let time = flight.time + (face - flight.position[axis]) / v;
-                if time < earliest {
-                    (earliest, exit) = (time, Exit { axis: axis as u8, up: v > 0.0, around });
-                }
+                let up = v > 0.0;
+                let (face, around) = face(axis, up);
+                let time = if v == 0.0 { f64::INFINITY } else { flight.time + (face - flight.position[axis]) / v };
+                // Selected, not branched to: directions are random.
+                let earlier = time < best.0;
+                *best = (if earlier { time } else { best.0 }, if earlier { Exit::new(level, axis, up, around) } else { best.1 });
             }
         }
-        let plan = &mut self.plans[i];
-        (plan.exit_time, plan.exit) = (earliest.max(now), exit);
     }
 
-    /// Executes the passage into the next cell.
-    pub(crate) fn leave_cell<const FIELD: bool>(&mut self, i: usize, exit: Exit) {
-        self.counts.crossings += 1;
-        let axis = exit.axis as usize;
-        self.grid.step(i as u32, axis, exit.up);
-        if exit.around {
-            // Around the box is a change of state: the particle is brought to the very face.
-            self.settle(i);
-            let (lower, upper) = (self.boundary.lower[axis], self.boundary.upper[axis]);
-            self.flights[i].position[axis] = if exit.up { lower } else { upper };
-            self.bodies[i].images[axis] += if exit.up { 1 } else { -1 };
-            self.plans[i].stamp = self.plans[i].stamp.wrapping_add(1);
-            self.plan::<FIELD>(i);
-        } else {
-            if self.grid.is_large(i as u32).is_some() {
-                self.plan_pair::<FIELD>(i);
-            } else {
-                let plan = self.plans[i];
-                let mut search = self.search(i, plan.pair_time, plan.partner, plan.image);
-                let around = self.grid.neighbourhood(i as u32);
-                self.grid.collect_ahead(&around, axis, exit.up, &mut self.candidates);
-                self.choose::<FIELD>(&mut search, &around);
-                // It may have come within reach of a large particle, which knows nothing of it yet.
-                let flights = &self.flights;
-                self.grid.visit_large(|j, shift, image| search.consider::<FIELD>(j, &flights[j as usize], shift, image));
-                if (search.time, search.partner, search.image) != (plan.pair_time, plan.partner, plan.image) {
-                    self.keep(i, &search);
-                }
-            }
-            self.plan_exit::<FIELD>(i);
+    /// The particle leaves its cell or its box.
+    #[inline]
+    pub(crate) fn leave<const FIELD: bool>(&mut self, i: usize) {
+        match &mut self.neighbours {
+            Neighbours::Cells(_) => self.leave_cell::<FIELD>(i),
+            Neighbours::Lists(_) => self.leave_box::<FIELD>(i),
         }
         self.calendar.schedule(i as u32, self.plans[i].next_time());
     }
+
+    fn leave_cell<const FIELD: bool>(&mut self, i: usize) {
+        let Neighbours::Cells(cells) = &mut self.neighbours else { return };
+        self.counts.crossings += 1;
+        let exit = self.plans[i].exit;
+        cells.step(i, exit);
+        if exit.around() {
+            // Around the box is a change of state: the particle is brought to the very face.
+            self.settle(i);
+            let axis = exit.axis();
+            let (lower, upper) = (self.boundary.lower[axis], self.boundary.upper[axis]);
+            self.flights[i].position[axis] = if exit.up() { lower } else { upper };
+            self.bodies[i].images[axis] += if exit.up() { 1 } else { -1 };
+            self.stamp(i);
+            return self.plan::<FIELD>(i);
+        }
+        cells.collect_new(i, exit, &mut self.candidates);
+        let images = self.candidates.images;
+        let words = self.candidates.padded(Neighbour::new(i as u32, home::<D>()));
+        let view = View { flights: &self.flights, images: &self.images, field: self.rules.field };
+        let found = search::<D, FIELD>(&view, self.instructions, &self.ids, i, self.now, words, images);
+        if earlier(found, self.plans[i].pair, &self.ids) {
+            self.keep(i, found);
+        }
+        self.plan_exit::<FIELD>(i);
+    }
+
+    fn leave_box<const FIELD: bool>(&mut self, i: usize) {
+        let wrapped = self.wrap(i);
+        let place = self.flights[i].position_at(self.now, self.rules.field);
+        let Neighbours::Lists(lists) = &mut self.neighbours else { return };
+        self.counts.rebuilds += 1;
+        lists.move_box(i, place, &self.images, &mut self.candidates);
+        if wrapped {
+            // A change of state, if only by rounding.
+            self.stamp(i);
+            self.plan::<FIELD>(i);
+        } else {
+            self.plan_pair::<FIELD>(i);
+            self.plan_exit::<FIELD>(i);
+        }
+    }
+}
+
+/// Earlier, or at the same time with a partner that comes first.
+#[inline]
+fn earlier(a: Meet, b: Meet, ids: &[u32]) -> bool {
+    let rank = |neighbour: Neighbour| (ids.get(neighbour.slot()).copied(), neighbour.image());
+    a.time < b.time || (a.time == b.time && a.time < f64::INFINITY && rank(a.neighbour) < rank(b.neighbour))
+}
+
+/// The earliest collision among candidates (words, a whole number of blocks).
+#[inline]
+fn search<const D: usize, const FIELD: bool>(
+    view: &View<'_, D>,
+    instructions: crate::search::Instructions,
+    ids: &[u32],
+    i: usize,
+    now: f64,
+    words: &[u32],
+    images: bool,
+) -> Meet {
+    let me = &view.flights[i];
+    let (found, tied) = if me.time == now {
+        view.earliest::<FIELD, true>(instructions, me, words, images)
+    } else {
+        view.earliest::<FIELD, false>(instructions, me, words, images)
+    };
+    if tied { among_equals::<D, FIELD>(view, ids, me, words) } else { found }
+}
+
+/// The same when some come at exactly the same time: one by one, so that the order of the candidates shows nowhere.
+#[cold]
+fn among_equals<const D: usize, const FIELD: bool>(
+    view: &View<'_, D>,
+    ids: &[u32],
+    me: &crate::motion::Flight<D>,
+    words: &[u32],
+) -> Meet {
+    let mut found = Meet::NEVER;
+    for neighbour in words.iter().copied().map(Neighbour::from_word) {
+        let meet = Meet { time: view.contact::<FIELD>(me, neighbour), neighbour };
+        if earlier(meet, found, ids) {
+            found = meet;
+        }
+    }
+    found
 }

@@ -54,8 +54,10 @@ pub struct Counts {
     pub collisions: u64,
     /// Contacts with walls, partitions and rims.
     pub wall_collisions: u64,
-    /// Passages from cell to cell.
+    /// Passages from cell to cell, where neighbours are found through cells.
     pub crossings: u64,
+    /// Neighbour lists made anew, where neighbours are found through lists.
+    pub rebuilds: u64,
     /// Events found obsolete when their time came, because the partner had collided meanwhile.
     pub stale: u64,
     /// Searches of a particle's whole neighbourhood for its next collision.

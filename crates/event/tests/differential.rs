@@ -7,18 +7,20 @@ mod reference;
 
 use std::ops::ControlFlow;
 
-use common::random_system;
-use corpuscle_core::{Contact, Engine, Meeting, Observer};
-use corpuscle_event::EventDriven;
+use common::{dense_system, random_system};
+use corpuscle_core::{Boundary, Contact, Engine, Meeting, Observer, Particles};
+use corpuscle_event::{EventDriven, Rules};
 use reference::{Event, Reference};
+
+type System<const D: usize> = (Boundary<D>, Particles<D>, Rules<D>);
 
 /// Compares the contacts of both engines one by one and answers how many there were.
 ///
 /// Trajectories that differ by rounding part at each collision by a factor of about free path over radius. So a contact
 /// whose chain of causes is `depth` contacts long must come at the same time within `1e-12 x 100^depth`. When a chain has
 /// reached three, the plain engine takes over the state of the other and the comparison goes on, without a gap.
-fn compare<const D: usize>(seed: u64, wanted: usize) -> usize {
-    let (boundary, particles, rules) = random_system::<D>(seed);
+fn compare<const D: usize>(seed: u64, system: System<D>, wanted: usize) -> usize {
+    let (boundary, particles, rules) = system;
     let n = particles.len();
     let mut engine = EventDriven::new(boundary.clone(), particles.clone(), rules).unwrap();
     let mut plain = Reference::new(boundary, particles, rules);
@@ -59,18 +61,29 @@ impl<const D: usize> Observer<D> for Next {
     }
 }
 
-fn compare_all<const D: usize>(seeds: std::ops::Range<u64>) {
+fn compare_all<const D: usize>(seeds: std::ops::Range<u64>, system: impl Fn(u64) -> System<D>) {
     let systems = seeds.end - seeds.start;
-    let total: usize = seeds.map(|seed| compare::<D>(seed, 60)).sum();
+    let total: usize = seeds.map(|seed| compare::<D>(seed, system(seed), 60)).sum();
     assert!(total as u64 >= 50 * systems, "only {total} contacts compared in {systems} systems");
 }
 
 #[test]
 fn discs_collide_in_the_same_order() {
-    compare_all::<2>(0..300);
+    compare_all::<2>(0..300, random_system);
 }
 
 #[test]
 fn spheres_collide_in_the_same_order() {
-    compare_all::<3>(1000..1200);
+    compare_all::<3>(1000..1200, random_system);
+}
+
+/// Found through neighbour lists.
+#[test]
+fn dense_discs_collide_in_the_same_order() {
+    compare_all::<2>(0..100, dense_system);
+}
+
+#[test]
+fn dense_spheres_collide_in_the_same_order() {
+    compare_all::<3>(0..10, dense_system);
 }

@@ -6,7 +6,7 @@ mod common;
 
 use std::ops::ControlFlow;
 
-use common::{Record, StopAfter, largest_overlap, random_system, same_bits};
+use common::{Record, StopAfter, dense_system, largest_overlap, random_system, same_bits};
 use corpuscle_core::{Axis, Boundary, Contact, Engine, Observer, Particles, Vector};
 use corpuscle_event::{EventDriven, Rules};
 use proptest::prelude::*;
@@ -35,8 +35,8 @@ fn energy<const D: usize>(engine: &EventDriven<D>) -> f64 {
     engine.kinetic_energy() + engine.potential_energy()
 }
 
-fn holds_its_invariants<const D: usize>(seed: u64) {
-    let (boundary, particles, rules) = random_system::<D>(seed);
+fn holds_its_invariants<const D: usize>(system: (Boundary<D>, Particles<D>, Rules<D>)) {
+    let (boundary, particles, rules) = system;
     let scale = particles.kinetic_energy() + 10.0 * rules.field.norm() * particles.mass.iter().sum::<f64>();
     let (start_energy, start_momentum) = {
         let engine = EventDriven::new(boundary.clone(), particles.clone(), rules).unwrap();
@@ -71,8 +71,8 @@ fn holds_its_invariants<const D: usize>(seed: u64) {
 }
 
 /// Once to the end, and in many steps with looks at the particles in between.
-fn stops_leave_no_trace<const D: usize>(seed: u64) {
-    let (boundary, particles, rules) = random_system::<D>(seed);
+fn stops_leave_no_trace<const D: usize>(system: (Boundary<D>, Particles<D>, Rules<D>)) {
+    let (boundary, particles, rules) = system.clone();
     let mut once = EventDriven::new(boundary, particles, rules).unwrap();
     let mut often = once.clone();
     let (mut a, mut b) = (Record::default(), Record::default());
@@ -85,7 +85,7 @@ fn stops_leave_no_trace<const D: usize>(seed: u64) {
     assert!(same_bits(&once.snapshot(), &often.snapshot()));
     assert_eq!(a.contacts, b.contacts);
     // And stopped by the observer after every contact.
-    let (boundary, particles, rules) = random_system::<D>(seed);
+    let (boundary, particles, rules) = system;
     let mut stopped = EventDriven::new(boundary, particles, rules).unwrap();
     while stopped.time() < 3.0 {
         stopped.advance(3.0, &mut StopAfter(1)).unwrap();
@@ -93,8 +93,8 @@ fn stops_leave_no_trace<const D: usize>(seed: u64) {
     assert!(same_bits(&once.snapshot(), &stopped.snapshot()));
 }
 
-fn returns_when_reversed<const D: usize>(seed: u64) {
-    let (boundary, particles, mut rules) = random_system::<D>(seed);
+fn returns_when_reversed<const D: usize>(system: (Boundary<D>, Particles<D>, Rules<D>)) {
+    let (boundary, particles, mut rules) = system;
     rules.restitution = 1.0;
     let mut engine = EventDriven::new(boundary, particles.clone(), rules).unwrap();
     // One contact a particle in the mean, so that rounding has not grown far.
@@ -115,17 +115,47 @@ fn returns_when_reversed<const D: usize>(seed: u64) {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(150) })]
     #[test]
-    fn discs_hold_their_invariants(seed in any::<u64>()) { holds_its_invariants::<2>(seed); }
+    fn discs_hold_their_invariants(seed in any::<u64>()) { holds_its_invariants::<2>(random_system(seed)); }
     #[test]
-    fn spheres_hold_their_invariants(seed in any::<u64>()) { holds_its_invariants::<3>(seed); }
+    fn spheres_hold_their_invariants(seed in any::<u64>()) { holds_its_invariants::<3>(random_system(seed)); }
     #[test]
-    fn stopping_discs_leaves_no_trace(seed in any::<u64>()) { stops_leave_no_trace::<2>(seed); }
+    fn stopping_discs_leaves_no_trace(seed in any::<u64>()) { stops_leave_no_trace::<2>(random_system(seed)); }
     #[test]
-    fn stopping_spheres_leaves_no_trace(seed in any::<u64>()) { stops_leave_no_trace::<3>(seed); }
+    fn stopping_spheres_leaves_no_trace(seed in any::<u64>()) { stops_leave_no_trace::<3>(random_system(seed)); }
     #[test]
-    fn reversed_discs_return(seed in any::<u64>()) { returns_when_reversed::<2>(seed); }
+    fn reversed_discs_return(seed in any::<u64>()) { returns_when_reversed::<2>(random_system(seed)); }
     #[test]
-    fn reversed_spheres_return(seed in any::<u64>()) { returns_when_reversed::<3>(seed); }
+    fn reversed_spheres_return(seed in any::<u64>()) { returns_when_reversed::<3>(random_system(seed)); }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(40) })]
+    #[test]
+    fn dense_discs_hold_their_invariants(seed in any::<u64>()) { holds_its_invariants::<2>(dense_system(seed)); }
+    #[test]
+    fn dense_spheres_hold_their_invariants(seed in any::<u64>()) { holds_its_invariants::<3>(dense_system(seed)); }
+    #[test]
+    fn stopping_dense_discs_leaves_no_trace(seed in any::<u64>()) { stops_leave_no_trace::<2>(dense_system(seed)); }
+    #[test]
+    fn stopping_dense_spheres_leaves_no_trace(seed in any::<u64>()) { stops_leave_no_trace::<3>(dense_system(seed)); }
+    #[test]
+    fn reversed_dense_discs_return(seed in any::<u64>()) { returns_when_reversed::<2>(dense_system(seed)); }
+    #[test]
+    fn reversed_dense_spheres_return(seed in any::<u64>()) { returns_when_reversed::<3>(dense_system(seed)); }
+}
+
+/// What the tests of dense systems rely on.
+#[test]
+fn dense_systems_use_neighbour_lists() {
+    fn check<const D: usize>(seed: u64) {
+        let (boundary, particles, rules) = dense_system::<D>(seed);
+        let mut engine = EventDriven::new(boundary, particles, rules).unwrap();
+        engine.advance(5.0, &mut ()).unwrap();
+        let counts = engine.counts();
+        assert!(counts.rebuilds > 0 && counts.crossings == 0, "{counts:?}");
+    }
+    (0..20).for_each(check::<2>);
+    (0..20).for_each(check::<3>);
 }
 
 /// Time is counted from a new epoch every 65536 contacts here: that depends on no stop either.

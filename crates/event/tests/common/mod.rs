@@ -126,3 +126,29 @@ pub(crate) fn random_system<const D: usize>(seed: u64) -> (Boundary<D>, Particle
     }
     (boundary, particles, rules)
 }
+
+/// A random dense system of nearly equal spheres, as large as neighbour lists need it: any mix of faces, radii over a
+/// factor of 1.1, masses over a factor of 10.
+pub(crate) fn dense_system<const D: usize>(seed: u64) -> (Boundary<D>, Particles<D>, Rules<D>) {
+    let mut random = Random::new(seed, 2);
+    let spacing = 1.02;
+    let side = if D == 2 { 7 } else { 6 };
+    let mut boundary = Boundary::<D>::new([0.0; D], [spacing * f64::from(side); D], Axis::Periodic);
+    let mut rules = Rules::default();
+    for k in 0..D {
+        if random.below(3) == 0 {
+            boundary.axes[k] = Axis::Walls;
+            rules.field[k] = if random.below(2) == 0 { random.normal() } else { 0.0 };
+        }
+    }
+    if random.below(3) == 0 {
+        (rules.restitution, rules.elastic_below) = (0.5 + 0.5 * random.uniform(), 0.05);
+    }
+    let mut particles = Particles::new();
+    for number in 0..(side as usize).pow(D as u32) {
+        let place = Vector::from_fn(|k| (0.5 + (number / (side as usize).pow(k as u32) % side as usize) as f64) * spacing);
+        let velocity = Vector::from_fn(|_| random.normal());
+        particles.push(place, velocity, 10f64.powf(random.uniform()), 0.45 + 0.05 * random.uniform(), 0);
+    }
+    (boundary, particles, rules)
+}

@@ -1,0 +1,44 @@
+//! Who is near whom: cells where particles are far apart, neighbour lists where they are dense.
+
+mod bins;
+mod cells;
+mod lists;
+mod reach;
+
+use corpuscle_core::{Boundary, Vector};
+
+pub(crate) use bins::Candidates;
+pub(crate) use cells::Cells;
+pub(crate) use lists::Lists;
+
+use crate::motion::Flight;
+use crate::search::Images;
+
+/// One of the two ways; the density decides.
+#[derive(Clone, Debug)]
+pub(crate) enum Neighbours<const D: usize> {
+    Cells(Cells<D>),
+    Lists(Lists<D>),
+}
+
+impl<const D: usize> Neighbours<D> {
+    /// `position`: where each particle is now.
+    pub(crate) fn new(
+        boundary: &Boundary<D>,
+        flights: &[Flight<D>],
+        position: impl Fn(usize) -> Vector<D>,
+        images: &Images<D>,
+        found: &mut Candidates,
+    ) -> Self {
+        Lists::new(boundary, flights, &position, images, found)
+            .map_or_else(|| Self::Cells(Cells::new(boundary, flights, &position)), Self::Lists)
+    }
+
+    /// Bytes held.
+    pub(crate) fn memory(&self) -> usize {
+        match self {
+            Self::Cells(cells) => cells.memory(),
+            Self::Lists(lists) => lists.memory(),
+        }
+    }
+}

@@ -1,0 +1,418 @@
+//! A grid of bins: which particles are near a place.
+
+use corpuscle_core::{Axis, Boundary, Vector};
+
+use crate::lanes::LANES;
+use crate::search::{Neighbour, home};
+
+pub(crate) const NONE: u32 = u32::MAX;
+/// Particles that a cell holds side by side.
+const SLOTS: usize = 3;
+/// Words of a cell: its slots and how many are filled.
+const WORDS: usize = SLOTS + 1;
+
+/// Cells over the box, each with the particles that were put into it.
+///
+/// A periodic neighbour comes with the number of its image, so boxes of one or two cells are exact as well. Across open
+/// axes the outermost cells have no end.
+#[derive(Clone, Debug)]
+pub(crate) struct Bins<const D: usize> {
+    pub(crate) lower: Vector<D>,
+    pub(crate) width: Vector<D>,
+    pub(crate) axes: [Axis; D],
+    pub(crate) cells: [u32; D],
+    stride: [u32; D],
+    content: Vec<Cell>,
+    /// Coordinates of the faces between cells along each axis; infinite at the ends of the box where nothing is beyond.
+    faces: [Vec<f64>; D],
+    places: Vec<Place<D>>,
+    /// The way to all neighbour cells, and to those that are new after a step down or up along an axis.
+    around: Vec<Way<D>>,
+    ahead: [[Vec<Way<D>>; 2]; D],
+}
+
+/// The way from a cell to one of its neighbours.
+#[derive(Clone, Copy, Debug)]
+struct Way<const D: usize> {
+    /// Along each axis: 0 down, 1 stay, 2 up.
+    layer: [u8; D],
+    /// What to add to the index of a cell inside the box.
+    step: i32,
+}
+
+/// Index contribution of a neighbour that does not exist: it lifts the sum beyond every cell.
+const OUTSIDE: u32 = 1 << 30;
+
+/// The particles of a cell, side by side so that they can be copied without looking how many there are.
+///
+/// They are stored as words, in the image of the box itself. In an overfull cell (`filled` is `WORDS`) the last slot
+/// holds the head of a list threaded through the particles.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(16))]
+struct Cell {
+    slots: [u32; SLOTS],
+    filled: u32,
+}
+
+impl Cell {
+    const EMPTY: Self = Self { slots: [NONE; SLOTS], filled: 0 };
+
+    /// All four words, in one piece.
+    #[inline]
+    fn words(&self) -> [u32; WORDS] {
+        [self.slots[0], self.slots[1], self.slots[2], self.filled]
+    }
+}
+
+/// Where a particle is: its cell, and the one after it in the list of an overfull cell.
+#[derive(Clone, Copy, Debug)]
+struct Place<const D: usize> {
+    next: u32,
+    cell: [u16; D],
+}
+
+/// The particles found in some cells: memory that is used again and again.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Candidates {
+    list: Vec<u32>,
+    count: usize,
+    /// Some of them are periodic images.
+    pub(crate) images: bool,
+}
+
+impl Candidates {
+    /// Those found, and more of `filler` up to a whole number of blocks.
+    #[inline]
+    pub(crate) fn padded(&mut self, filler: Neighbour) -> &[u32] {
+        self.reserve(LANES);
+        self.list[self.count..self.count + LANES].fill(filler.word());
+        &self.list[..self.count.next_multiple_of(LANES)]
+    }
+
+    #[inline]
+    pub(crate) fn clear(&mut self) {
+        (self.count, self.images) = (0, false);
+    }
+
+    #[inline]
+    pub(crate) fn push(&mut self, neighbour: Neighbour) {
+        self.reserve(1);
+        self.list[self.count] = neighbour.word();
+        self.count += 1;
+    }
+
+    /// Overwrites one of those found.
+    #[inline]
+    pub(crate) fn put(&mut self, number: usize, word: u32) {
+        self.list[number] = word;
+    }
+
+    #[inline]
+    pub(crate) fn found(&self) -> &[u32] {
+        &self.list[..self.count]
+    }
+
+    #[inline]
+    fn reserve(&mut self, more: usize) {
+        if self.list.len() < self.count + more {
+            self.list.resize(2 * (self.count + more), 0);
+        }
+    }
+}
+
+impl<const D: usize> Bins<D> {
+    /// Cells at least `width` wide, with room for particles `0..count`; no more than about `most` of them.
+    pub(crate) fn new(boundary: &Boundary<D>, mut width: f64, count: usize, most: f64) -> Self {
+        let extent = boundary.extent();
+        let cells = loop {
+            let cells: [u32; D] = std::array::from_fn(|k| (extent[k] / width).floor().clamp(1.0, 60_000.0) as u32);
+            // Thin boxes have one layer of cells however wide, and would have too many along the other axes.
+            if cells.iter().map(|&n| f64::from(n)).product::<f64>() <= most {
+                break cells;
+            }
+            width *= 1.1;
+        };
+        let mut stride = [1; D];
+        for k in 1..D {
+            stride[k] = stride[k - 1] * cells[k - 1];
+        }
+        let total = cells.iter().product::<u32>() as usize;
+        let around: Vec<Way<D>> = (0..3usize.pow(D as u32))
+            .map(|number| {
+                let layer: [u8; D] = std::array::from_fn(|k| (number / 3usize.pow(k as u32) % 3) as u8);
+                Way { layer, step: (0..D).map(|k| (i32::from(layer[k]) - 1) * stride[k] as i32).sum() }
+            })
+            .collect();
+        let width = Vector::from_fn(|k| extent[k] / f64::from(cells[k]));
+        let faces = std::array::from_fn(|k| {
+            let periodic = boundary.axes[k] == Axis::Periodic;
+            let ends = |open: f64, face: f64| if periodic { face } else { open };
+            let mut faces: Vec<f64> = (0..=cells[k]).map(|c| boundary.lower[k] + f64::from(c) * width[k]).collect();
+            faces[0] = ends(f64::NEG_INFINITY, boundary.lower[k]);
+            faces[cells[k] as usize] = ends(f64::INFINITY, boundary.upper[k]);
+            faces
+        });
+        Self {
+            lower: boundary.lower,
+            width,
+            axes: boundary.axes,
+            cells,
+            stride,
+            content: vec![Cell::EMPTY; total],
+            faces,
+            places: vec![Place { next: NONE, cell: [0; D] }; count],
+            ahead: std::array::from_fn(|k| {
+                [0, 2].map(|layer| around.iter().copied().filter(|way| way.layer[k] == layer).collect())
+            }),
+            around,
+        }
+    }
+
+    /// The cell around a point.
+    #[inline]
+    pub(crate) fn cell_of(&self, r: Vector<D>) -> [u16; D] {
+        std::array::from_fn(|k| ((r[k] - self.lower[k]) / self.width[k]).floor().clamp(0.0, f64::from(self.cells[k] - 1)) as u16)
+    }
+
+    #[inline]
+    pub(crate) fn cell(&self, i: usize) -> [u16; D] {
+        self.places[i].cell
+    }
+
+    /// Says where a particle is, without putting it into the cell's list.
+    #[inline]
+    pub(crate) fn locate(&mut self, i: usize, cell: [u16; D]) {
+        self.places[i].cell = cell;
+    }
+
+    #[inline]
+    pub(crate) fn index(&self, cell: [u16; D]) -> usize {
+        cell.iter().zip(&self.stride).map(|(&c, stride)| u32::from(c) * stride).sum::<u32>() as usize
+    }
+
+    /// The coordinate of the face at which a particle leaves its cell, and whether that is a periodic face of the box.
+    /// Infinity where nothing is beyond: the cell has no end, or a wall comes first.
+    #[inline]
+    pub(crate) fn face(&self, i: usize, axis: usize, up: bool) -> (f64, bool) {
+        let number = self.places[i].cell[axis] as usize + usize::from(up);
+        let end = if up { self.cells[axis] as usize } else { 0 };
+        (self.faces[axis][number], number == end)
+    }
+
+    /// Puts a particle into the list of its cell.
+    #[inline]
+    pub(crate) fn insert(&mut self, i: usize) {
+        let index = self.index(self.places[i].cell);
+        let cell = &mut self.content[index];
+        if let Some(slot) = cell.slots.get_mut(cell.filled as usize) {
+            *slot = word::<D>(i);
+            cell.filled += 1;
+        } else {
+            self.insert_into_list(index, i);
+        }
+    }
+
+    #[cold]
+    fn insert_into_list(&mut self, index: usize, i: usize) {
+        let cell = &mut self.content[index];
+        let last = &mut cell.slots[SLOTS - 1];
+        if cell.filled as usize == SLOTS {
+            self.places[slot(*last)].next = NONE;
+            cell.filled += 1;
+        }
+        self.places[i].next = std::mem::replace(last, word::<D>(i));
+    }
+
+    /// Takes a particle out of the list of its cell.
+    #[inline]
+    pub(crate) fn remove(&mut self, i: usize) {
+        let index = self.index(self.places[i].cell);
+        let cell = &mut self.content[index];
+        let filled = cell.filled as usize;
+        if filled > SLOTS {
+            return self.remove_from_list(index, i);
+        }
+        // The last one takes the place; without a branch, since any of them may be the one.
+        let last = cell.slots[(filled + SLOTS - 1) % SLOTS];
+        for slot in &mut cell.slots {
+            *slot = if *slot == word::<D>(i) { last } else { *slot };
+        }
+        cell.filled -= 1;
+    }
+
+    #[cold]
+    fn remove_from_list(&mut self, index: usize, i: usize) {
+        let cell = &mut self.content[index];
+        let head = slot(cell.slots[SLOTS - 1]);
+        if let Some(slot) = cell.slots[..SLOTS - 1].iter_mut().find(|slot| **slot == word::<D>(i)) {
+            *slot = word::<D>(head);
+            cell.slots[SLOTS - 1] = self.places[head].next;
+        } else if head == i {
+            cell.slots[SLOTS - 1] = self.places[i].next;
+        } else {
+            let mut before = head;
+            while self.places[before].next != word::<D>(i) {
+                before = slot(self.places[before].next);
+            }
+            self.places[before].next = self.places[i].next;
+        }
+        // One particle left in the list is no list any more.
+        if self.places[slot(cell.slots[SLOTS - 1])].next == NONE {
+            cell.filled = SLOTS as u32;
+        }
+    }
+
+    /// Moves a particle's place to the next cell along an axis, around a periodic box.
+    #[inline]
+    pub(crate) fn step(&mut self, i: usize, axis: usize, up: bool) {
+        let last = (self.cells[axis] - 1) as u16;
+        let cell = &mut self.places[i].cell[axis];
+        *cell = match (up, *cell) {
+            (true, c) if c == last => 0,
+            (true, c) => c + 1,
+            (false, 0) => last,
+            (false, c) => c - 1,
+        };
+    }
+
+    /// Puts a particle's place to the other end of the box, after a passage through a periodic face.
+    pub(crate) fn step_around(&mut self, i: usize, axis: usize, up: bool) {
+        self.places[i].cell[axis] = if up { 0 } else { (self.cells[axis] - 1) as u16 };
+    }
+
+    /// Every neighbour of the cell exists, in the box itself.
+    #[inline]
+    fn inside(&self, cell: [u16; D]) -> bool {
+        (0..D).all(|k| u32::from(cell[k]).wrapping_sub(1) < self.cells[k].saturating_sub(2))
+    }
+
+    /// Collects the particles of all cells around a cell, that one included.
+    #[inline]
+    pub(crate) fn collect_around(&self, cell: [u16; D], found: &mut Candidates) {
+        self.collect(cell, &self.around, found);
+    }
+
+    /// The same, for the layer of cells that is new after a step into this cell.
+    #[inline]
+    pub(crate) fn collect_ahead(&self, cell: [u16; D], axis: usize, up: bool, found: &mut Candidates) {
+        self.collect(cell, &self.ahead[axis][usize::from(up)], found);
+    }
+
+    #[inline]
+    fn collect(&self, cell: [u16; D], ways: &[Way<D>], found: &mut Candidates) {
+        found.reserve(WORDS * ways.len());
+        if !self.inside(cell) {
+            found.images = true;
+            return self.collect_at_border(cell, ways, found);
+        }
+        let index = self.index(cell) as i32;
+        let (list, mut count) = (found.list.as_mut_slice(), found.count);
+        let mut overfull = 0;
+        for way in ways {
+            let cell = self.content[(index + way.step) as usize];
+            list[count..][..WORDS].copy_from_slice(&cell.words());
+            count += cell.filled as usize;
+            overfull |= cell.filled;
+        }
+        if overfull > SLOTS as u32 {
+            return ways.iter().for_each(|way| self.collect_cell((index + way.step) as usize, 0, found));
+        }
+        found.count = count;
+    }
+
+    /// At a face of the box: neighbours around periodic faces, none beyond others.
+    fn collect_at_border(&self, cell: [u16; D], ways: &[Way<D>], found: &mut Candidates) {
+        let (mut part, mut image) = ([[0; 3]; D], [[0; 3]; D]);
+        let mut digit = 1;
+        for k in 0..D {
+            let (c, last, stride) = (u32::from(cell[k]), self.cells[k] - 1, self.stride[k]);
+            let beyond = |around: u32| if self.axes[k] == Axis::Periodic { around * stride } else { OUTSIDE };
+            let down = if c == 0 { beyond(last) } else { (c - 1) * stride };
+            let up = if c == last { beyond(0) } else { (c + 1) * stride };
+            part[k] = [down, c * stride, up];
+            image[k] = [if c == 0 { 0 } else { digit }, digit, if c == last { 2 * digit } else { digit }];
+            digit *= 3;
+        }
+        for way in ways {
+            let layer = |k: usize| way.layer[k] as usize;
+            let index: u32 = (0..D).map(|k| part[k][layer(k)]).sum();
+            if index < OUTSIDE {
+                let image: u8 = (0..D).map(|k| image[k][layer(k)]).sum();
+                self.collect_cell(index as usize, away::<D>(image), found);
+            }
+        }
+    }
+
+    /// All the particles of one cell, in another image: `away` is added to the words. There must be room for its slots.
+    #[inline]
+    fn collect_cell(&self, index: usize, away: u32, found: &mut Candidates) {
+        let cell = self.content[index];
+        let words = cell.words().map(|word| word.wrapping_add(away));
+        found.list[found.count..][..WORDS].copy_from_slice(&words);
+        found.count += cell.filled as usize;
+        if cell.filled > SLOTS as u32 {
+            self.collect_list(index, away, found);
+        }
+    }
+
+    #[cold]
+    fn collect_list(&self, index: usize, away: u32, found: &mut Candidates) {
+        found.count -= 2;
+        let mut word = self.content[index].slots[SLOTS - 1];
+        while word != NONE {
+            found.reserve(1 + WORDS * self.around.len());
+            found.list[found.count] = word.wrapping_add(away);
+            found.count += 1;
+            word = self.places[slot(word)].next;
+        }
+    }
+
+    /// The particles of the cell at this offset from another, if there is one.
+    #[inline]
+    pub(crate) fn collect_at(&self, cell: [u16; D], offset: [i32; D], found: &mut Candidates) {
+        if let Some((index, image)) = self.at(cell, offset) {
+            found.reserve(WORDS);
+            found.images |= image != home::<D>();
+            self.collect_cell(index, away::<D>(image), found);
+        }
+    }
+
+    /// Index and image of the cell at this offset from another, if there is one.
+    #[inline]
+    pub(crate) fn at(&self, cell: [u16; D], offset: [i32; D]) -> Option<(usize, u8)> {
+        let (mut index, mut image, mut digit) = (0, 0, 1);
+        for k in 0..D {
+            let (place, cells) = (i32::from(cell[k]) + offset[k], self.cells[k] as i32);
+            let turns = place.div_euclid(cells);
+            if turns != 0 && self.axes[k] != Axis::Periodic {
+                return None;
+            }
+            index += place.rem_euclid(cells) as u32 * self.stride[k];
+            image += digit * (turns + 1) as u8;
+            digit *= 3;
+        }
+        Some((index as usize, image))
+    }
+
+    /// Bytes held.
+    pub(crate) fn memory(&self) -> usize {
+        self.content.capacity() * size_of::<Cell>() + self.places.capacity() * size_of::<Place<D>>()
+    }
+}
+
+/// How a particle is noted in its cell.
+#[inline]
+fn word<const D: usize>(i: usize) -> u32 {
+    Neighbour::new(i as u32, home::<D>()).word()
+}
+
+#[inline]
+fn slot(word: u32) -> usize {
+    Neighbour::from_word(word).slot()
+}
+
+/// What to add to the words of a cell that is seen in this image.
+#[inline]
+fn away<const D: usize>(image: u8) -> u32 {
+    Neighbour::new(0, image).word().wrapping_sub(Neighbour::new(0, home::<D>()).word())
+}

@@ -1,0 +1,184 @@
+//! Candidates from cells: nested grids, one for each class of sizes.
+
+use corpuscle_core::{Boundary, Vector};
+
+use super::bins::{Bins, Candidates};
+use super::reach::Reach;
+use crate::motion::Flight;
+use crate::plan::Exit;
+
+/// Grids for classes of sizes, the smallest first.
+///
+/// In the grid of its own class a particle finds others of the class in the cells around its own, since their diameters
+/// are below the width of a cell. For each smaller class it also has a place in that grid, from which follows which cells
+/// its surface can reach ([`Reach`]). Equal spheres need one grid.
+#[derive(Clone, Debug)]
+pub(crate) struct Cells<const D: usize> {
+    levels: Vec<Level<D>>,
+    /// The class of each particle; empty if there is one class.
+    class: Vec<u8>,
+}
+
+#[derive(Clone, Debug)]
+struct Level<const D: usize> {
+    bins: Bins<D>,
+    reach: Reach<D>,
+}
+
+/// Cells are wider than the diameters by this, wider than rounding: pairs become neighbours before they can touch.
+const MARGIN: f64 = 1.0 + 1e-6;
+
+impl<const D: usize> Cells<D> {
+    /// `position`: where each particle is now.
+    pub(crate) fn new(boundary: &Boundary<D>, flights: &[Flight<D>], position: impl Fn(usize) -> Vector<D>) -> Self {
+        let count = flights.len();
+        let mut class = vec![0; count];
+        let mut levels = vec![];
+        let mut rest: Vec<usize> = (0..count).collect();
+        loop {
+            let radii: Vec<f64> = rest.iter().map(|&i| flights[i].radius).collect();
+            // At most 256 classes: the last takes all that are left.
+            let width = if levels.len() == 255 {
+                2.0 * MARGIN * radii.iter().copied().fold(0.0, f64::max)
+            } else {
+                cell_width(boundary, &radii)
+            };
+            let mut bins = Bins::new(boundary, width, count, 8.0 * rest.len() as f64 + 64.0);
+            let fits = |radius: f64| 2.0 * radius * (1.0 + 0.9 * (MARGIN - 1.0)) <= width;
+            let (mut largest, mut larger) = (0.0f64, vec![]);
+            for &i in &rest {
+                bins.locate(i, bins.cell_of(position(i)));
+                if fits(flights[i].radius) {
+                    bins.insert(i);
+                    class[i] = levels.len() as u8;
+                    largest = largest.max(flights[i].radius);
+                } else {
+                    larger.push((i, flights[i].radius));
+                }
+            }
+            let reach = Reach::new(&bins, &larger, largest);
+            levels.push(Level { bins, reach });
+            rest = larger.into_iter().map(|(i, _)| i).collect();
+            if rest.is_empty() {
+                break;
+            }
+        }
+        if levels.len() == 1 {
+            class.clear();
+        }
+        Self { levels, class }
+    }
+
+    #[inline]
+    fn class(&self, i: usize) -> usize {
+        self.class.get(i).map_or(0, |&class| class as usize)
+    }
+
+    /// Everything the particle can touch before it or the other steps into another cell.
+    #[inline]
+    pub(crate) fn collect(&self, i: usize, found: &mut Candidates) {
+        found.clear();
+        let class = self.class(i);
+        let Level { bins, reach } = &self.levels[class];
+        bins.collect_around(bins.cell(i), found);
+        reach.collect_larger(bins.index(bins.cell(i)), found);
+        for smaller in &self.levels[..class] {
+            smaller.reach.collect_smaller(&smaller.bins, i, found);
+        }
+    }
+
+    /// What has become near by a step.
+    #[inline]
+    pub(crate) fn collect_new(&self, i: usize, exit: Exit, found: &mut Candidates) {
+        found.clear();
+        let level = exit.level();
+        let Level { bins, reach } = &self.levels[level];
+        if level == self.class(i) {
+            bins.collect_ahead(bins.cell(i), exit.axis(), exit.up(), found);
+            reach.collect_larger(bins.index(bins.cell(i)), found);
+        } else {
+            reach.collect_smaller(bins, i, found);
+        }
+    }
+
+    /// Takes the particle into the next cell. A step over a face of the box is one in the grids of all classes.
+    pub(crate) fn step(&mut self, i: usize, exit: Exit) {
+        let (class, axis) = (self.class(i), exit.axis());
+        let steps = if exit.around() { 0..class + 1 } else { exit.level()..exit.level() + 1 };
+        for level in steps {
+            let Level { bins, reach } = &mut self.levels[level];
+            if level == class {
+                bins.remove(i);
+            }
+            if exit.around() {
+                bins.step_around(i, axis, exit.up());
+            } else {
+                bins.step(i, axis, exit.up());
+            }
+            if level == class {
+                bins.insert(i);
+            } else {
+                reach.register(bins, i);
+            }
+        }
+    }
+
+    /// In how many grids the particle has a place.
+    #[inline]
+    pub(crate) fn levels(&self, i: usize) -> usize {
+        self.class(i) + 1
+    }
+
+    /// The face of its cell of a level at which a particle leaves it: see [`Bins::face`].
+    #[inline]
+    pub(crate) fn face(&self, i: usize, level: usize, axis: usize, up: bool) -> (f64, bool) {
+        self.levels[level].bins.face(i, axis, up)
+    }
+
+    pub(crate) fn memory(&self) -> usize {
+        self.levels.iter().map(|level| level.bins.memory() + level.reach.memory()).sum::<usize>() + self.class.capacity()
+    }
+}
+
+/// Mean number of particles in a cell below which finer cells only cost crossings. Measured: docs/performance.md.
+const OCCUPANCY: f64 = 0.5;
+
+/// The cell width with the least estimated work; particles of larger diameter are left to the next class.
+///
+/// Work of a collision, in pair tests: a particle of the class looks into `3^D` cells; a larger one, which collides more
+/// often the larger its surface, looks into every cell its surface reaches.
+fn cell_width<const D: usize>(boundary: &Boundary<D>, radii: &[f64]) -> f64 {
+    let extent = boundary.extent();
+    let longest = extent.0.into_iter().fold(0.0, f64::max);
+    let mut sorted = radii.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let largest = sorted.last().copied().unwrap_or(0.0);
+    if largest == 0.0 {
+        // Points never meet.
+        return 2.0 * longest;
+    }
+    let (volume, d) = (boundary.volume(), D as i32);
+    let mut best = (f64::INFINITY, 2.0 * largest);
+    let mut previous = 0.0;
+    for (m, &radius) in sorted.iter().enumerate().rev() {
+        // Of nearly equal radii only the largest can be the border.
+        if previous > 0.0 && radius > 0.95 * previous {
+            continue;
+        }
+        previous = radius;
+        let small = m as f64 + 1.0;
+        let width = (2.0 * radius * MARGIN).max((OCCUPANCY * volume / small).powf(1.0 / f64::from(d)));
+        let in_cell = small * width.powi(d) / volume;
+        let mut work = small * 3f64.powi(d) * (0.3 + in_cell);
+        let stride = 1 + (sorted.len() - m) / 64;
+        for &big in sorted[m + 1..].iter().step_by(stride) {
+            // The cells at its surface, for each of its collisions, and looked at by the small ones in them.
+            let cells = 2.0 * f64::from(d) * (2.0 * big / width + 1.0).powi(d - 1);
+            work += stride as f64 * cells * ((big / width + 1.0).powi(d - 1) * (0.3 + in_cell) + in_cell);
+        }
+        if work < best.0 {
+            best = (work, width);
+        }
+    }
+    best.1
+}

@@ -1,0 +1,202 @@
+//! Candidates from neighbour lists: for dense systems of about equal spheres.
+
+use corpuscle_core::{Axis, Boundary, Vector};
+
+use super::bins::{Bins, Candidates};
+use crate::lanes::LANES;
+use crate::motion::Flight;
+use crate::search::{Images, Neighbour, home, opposite};
+
+/// For each particle those that it can touch while both stay in their own small boxes.
+///
+/// The box of a particle is a cube around where it was when the box was made. Two particles are in each other's lists if
+/// their boxes come closer than a contact distance; so no list changes until a particle leaves its box. Then it gets a new
+/// box, and its entries in lists, its own and those of its old and new neighbours, are made anew: the lists are always
+/// complete and symmetric.
+#[derive(Clone, Debug)]
+pub(crate) struct Lists<const D: usize> {
+    /// For each particle a row: [`HEAD`] words with the centre of its box and the number of neighbours, then these,
+    /// then the particle itself up to the end of the row: a candidate that is never met.
+    rows: Vec<u32>,
+    stride: usize,
+    /// Half the side of a particle's box.
+    half: f64,
+    /// Boxes closer than this, squared, make neighbours.
+    reach: f64,
+    bins: Bins<D>,
+}
+
+const HEAD: usize = 4;
+
+/// Half the side of a box, in units of the largest diameter. Measured: docs/performance.md.
+const HALF_SIDE: f64 = 0.2;
+
+/// The packing fraction above which lists serve better than cells. Measured: docs/performance.md.
+const fn dense<const D: usize>() -> f64 {
+    if D == 2 { 0.5 } else { 0.4 }
+}
+
+impl<const D: usize> Lists<D> {
+    /// The contact distance and half the side of the boxes to use, if lists suit the system.
+    fn fit(boundary: &Boundary<D>, flights: &[Flight<D>]) -> Option<(f64, f64)> {
+        let radius = flights.iter().map(|flight| flight.radius).fold(0.0, f64::max);
+        let smallest = flights.iter().map(|flight| flight.radius).fold(f64::INFINITY, f64::min);
+        let volume = flights.iter().map(|flight| corpuscle_core::particles::ball_volume::<D>(flight.radius)).sum::<f64>();
+        let packing = volume / boundary.volume();
+        let half = HALF_SIDE * 2.0 * radius;
+        let reach = 2.0 * radius + 2.0 * half;
+        let extent = boundary.extent();
+        // Each neighbour in one image only, and centres as single-precision numbers fine enough.
+        let fits = (0..D).all(|k| extent[k] > 3.5 * reach && extent[k].max(boundary.upper[k].abs()) < 1e4 * half);
+        let closed = !boundary.axes.contains(&Axis::Open);
+        (packing > dense::<D>() && smallest > 0.5 * radius && fits && closed).then_some((2.0 * radius, half))
+    }
+
+    /// Lists for these particles, if lists suit them. `position`: where each is now.
+    pub(crate) fn new(
+        boundary: &Boundary<D>,
+        flights: &[Flight<D>],
+        position: impl Fn(usize) -> Vector<D>,
+        images: &Images<D>,
+        found: &mut Candidates,
+    ) -> Option<Self> {
+        let (contact, half) = Self::fit(boundary, flights)?;
+        let reach = contact * (1.0 + 1e-6);
+        let bins = Bins::new(boundary, reach + 2.0 * half, flights.len(), 8.0 * flights.len() as f64 + 64.0);
+        let mut lists = Self { rows: vec![], stride: HEAD, half, reach: reach * reach, bins };
+        lists.widen(if D == 2 { 8 } else { 12 }, flights.len());
+        for i in 0..flights.len() {
+            lists.set_centre(i, position(i));
+            lists.bins.insert(i);
+        }
+        for i in 0..flights.len() {
+            lists.join(i, images, found, |j| j < i);
+        }
+        Some(lists)
+    }
+
+    #[inline]
+    pub(crate) fn centre(&self, i: usize) -> Vector<D> {
+        let row = &self.rows[i * self.stride..];
+        Vector::from_fn(|k| f64::from(f32::from_bits(row[k])))
+    }
+
+    fn set_centre(&mut self, i: usize, r: Vector<D>) {
+        let row = &mut self.rows[i * self.stride..];
+        for k in 0..D {
+            row[k] = (r[k] as f32).to_bits();
+        }
+        let centre = self.centre(i);
+        self.bins.locate(i, self.bins.cell_of(centre));
+    }
+
+    /// The neighbours of a particle (words), filled up to a whole number of blocks; and whether some are periodic images.
+    #[inline]
+    pub(crate) fn neighbours(&self, i: usize) -> (&[u32], bool) {
+        let row = &self.rows[i * self.stride..(i + 1) * self.stride];
+        let (count, images) = unpack(row[COUNT]);
+        (&row[HEAD..HEAD + count.next_multiple_of(LANES)], images != 0)
+    }
+
+    /// The coordinate of a face of a particle's box.
+    #[inline]
+    pub(crate) fn face(&self, i: usize, axis: usize, up: bool) -> f64 {
+        let centre = f64::from(f32::from_bits(self.rows[i * self.stride + axis]));
+        if up { centre + self.half } else { centre - self.half }
+    }
+
+    /// Gives a particle a new box around where it is now, and the neighbours that come with it.
+    pub(crate) fn move_box(&mut self, i: usize, r: Vector<D>, images: &Images<D>, found: &mut Candidates) {
+        let row = i * self.stride;
+        let (count, _) = unpack(self.rows[row + COUNT]);
+        for at in row + HEAD..row + HEAD + count {
+            self.remove(Neighbour::from_word(self.rows[at]), i);
+        }
+        self.rows[row + COUNT] = 0;
+        self.rows[row + HEAD..row + self.stride].fill(Neighbour::new(i as u32, home::<D>()).word());
+        self.bins.remove(i);
+        self.set_centre(i, r);
+        self.bins.insert(i);
+        self.join(i, images, found, |j| j != i);
+    }
+
+    /// Makes neighbours of a particle and all others whose boxes are near.
+    fn join(&mut self, i: usize, images: &Images<D>, found: &mut Candidates, wanted: impl Fn(usize) -> bool) {
+        found.clear();
+        self.bins.collect_around(self.bins.cell(i), found);
+        let centre = self.centre(i);
+        let count = found.found().len();
+        let mut near = 0;
+        for number in 0..count {
+            let word = found.found()[number];
+            let other = Neighbour::from_word(word);
+            let r = self.centre(other.slot()) - centre + images.shift(other);
+            let gap = Vector::<D>::from_fn(|k| (r[k].abs() - 2.0 * self.half).max(0.0));
+            // Kept or overwritten by the next: without a branch, since either is likely.
+            found.put(near, word);
+            near += usize::from((gap.norm_squared() < self.reach) & wanted(other.slot()));
+        }
+        for number in 0..near {
+            let other = Neighbour::from_word(found.found()[number]);
+            self.push(i, other);
+            self.push(other.slot(), Neighbour::new(i as u32, opposite::<D>(other.image() as u8)));
+        }
+    }
+
+    #[inline]
+    fn push(&mut self, i: usize, neighbour: Neighbour) {
+        let row = i * self.stride;
+        let (count, _) = unpack(self.rows[row + COUNT]);
+        if HEAD + count == self.stride {
+            self.widen(LANES * 2, self.rows.len() / self.stride);
+            return self.push(i, neighbour);
+        }
+        self.rows[row + HEAD + count] = neighbour.word();
+        self.rows[row + COUNT] += 1 + (u32::from(neighbour.image() != home::<D>() as usize) << 16);
+    }
+
+    /// Takes `i` out of the list of a neighbour, as `i` sees it.
+    #[inline]
+    fn remove(&mut self, neighbour: Neighbour, i: usize) {
+        let image = opposite::<D>(neighbour.image() as u8);
+        let word = Neighbour::new(i as u32, image).word();
+        let start = neighbour.slot() * self.stride;
+        let row = &mut self.rows[start..start + self.stride];
+        let (count, _) = unpack(row[COUNT]);
+        let last = row[HEAD + count - 1];
+        // Without a branch: any of them may be the one.
+        for entry in &mut row[HEAD..HEAD + count.next_multiple_of(LANES)] {
+            *entry = if *entry == word { last } else { *entry };
+        }
+        row[HEAD + count - 1] = Neighbour::new(neighbour.slot() as u32, home::<D>()).word();
+        row[COUNT] -= 1 + (u32::from(image != home::<D>()) << 16);
+    }
+
+    /// Makes the rows of all particles longer.
+    #[cold]
+    fn widen(&mut self, more: usize, particles: usize) {
+        let stride = self.stride + more;
+        let mut rows = vec![0; particles * stride];
+        for i in 0..particles {
+            let row = &mut rows[i * stride..(i + 1) * stride];
+            row[HEAD..].fill(Neighbour::new(i as u32, home::<D>()).word());
+            if let Some(old) = self.rows.get(i * self.stride..(i + 1) * self.stride) {
+                row[..self.stride].copy_from_slice(old);
+            }
+        }
+        (self.rows, self.stride) = (rows, stride);
+    }
+
+    pub(crate) fn memory(&self) -> usize {
+        self.rows.capacity() * size_of::<u32>() + self.bins.memory()
+    }
+}
+
+/// Place of the number of neighbours in a row.
+const COUNT: usize = HEAD - 1;
+
+/// How many neighbours there are, and how many of them are periodic images.
+#[inline]
+fn unpack(word: u32) -> (usize, usize) {
+    ((word & 0xffff) as usize, (word >> 16) as usize)
+}
