@@ -1,8 +1,11 @@
 //! The box, its faces and the partitions in it. Both engines read the same description.
 
+mod overlap;
 mod partition;
 
 pub use partition::{Hole, Partition};
+
+use std::ops::ControlFlow;
 
 use crate::{Invalid, Particles, Vector};
 
@@ -97,6 +100,25 @@ impl<const D: usize> Boundary<D> {
         position
     }
 
+    /// The same for a position less than one side beyond the box: cheaper.
+    #[inline]
+    #[must_use]
+    pub fn wrap_near(&self, mut position: Vector<D>) -> Vector<D> {
+        for k in 0..D {
+            if self.axes[k] == Axis::Periodic {
+                let side = self.upper[k] - self.lower[k];
+                if position[k] < self.lower[k] {
+                    position[k] += side;
+                }
+                // Rounding can put a point a hair below the lower face on the upper face itself.
+                if position[k] >= self.upper[k] {
+                    position[k] -= side;
+                }
+            }
+        }
+        position
+    }
+
     /// The shortest `to - from` over all periodic images (nearest image; unique while shorter than half a side).
     #[inline]
     pub fn displacement(&self, from: Vector<D>, to: Vector<D>) -> Vector<D> {
@@ -129,10 +151,10 @@ impl<const D: usize> Boundary<D> {
     }
 
     /// Checks that particles and box fit: centres inside (walls kept a radius away), no two spheres overlapping,
-    /// none cut by a partition. Cost `O(N log N)`.
+    /// none cut by a partition. Cost `O(N)`.
     ///
     /// # Errors
-    /// Names the first particle, or pair, at fault.
+    /// Names the first particle, or a pair, at fault.
     pub fn validate_particles(&self, particles: &Particles<D>) -> Result<(), Invalid> {
         self.validate()?;
         particles.validate()?;
@@ -177,53 +199,24 @@ impl<const D: usize> Boundary<D> {
         })
     }
 
-    /// Deepest overlap `R_i + R_j - |r_ij|` among all pairs, zero when none overlap. Cost `O(N log N)`.
+    /// Deepest overlap `R_i + R_j - |r_ij|` among all pairs, zero when none overlap. Cost `O(N)`.
     pub fn largest_overlap(&self, particles: &Particles<D>) -> f64 {
         let mut largest: f64 = 0.0;
-        self.for_each_overlap(particles, 0.0, |_, _, depth| largest = largest.max(depth));
+        self.for_each_overlap(particles, 0.0, |_, _, depth| {
+            largest = largest.max(depth);
+            ControlFlow::Continue(())
+        });
         largest
     }
 
-    /// The first pair that overlaps by more than rounding.
+    /// A pair that overlaps by more than rounding.
     fn first_overlap(&self, particles: &Particles<D>) -> Option<(usize, usize, f64)> {
         let mut first = None;
         self.for_each_overlap(particles, 1e-12, |i, j, depth| {
-            let pair = (i.min(j), i.max(j));
-            if first.is_none_or(|(a, b, _)| pair < (a, b)) {
-                first = Some((pair.0, pair.1, depth));
-            }
+            first = Some((i.min(j), i.max(j), depth));
+            ControlFlow::Break(())
         });
         first
-    }
-
-    /// Calls `found(i, j, depth)` for each overlapping pair: sweep along the first axis over sorted extents.
-    fn for_each_overlap(&self, particles: &Particles<D>, tolerance: f64, mut found: impl FnMut(usize, usize, f64)) {
-        let n = particles.len();
-        let mut order: Vec<usize> = (0..n).filter(|&i| particles.radius[i] > 0.0).collect();
-        let x = |i: usize| particles.position[i][0];
-        order.sort_by(|&i, &j| (x(i) - particles.radius[i]).total_cmp(&(x(j) - particles.radius[j])));
-        let side = self.upper[0] - self.lower[0];
-        let mut check = |i: usize, j: usize| {
-            let contact = particles.radius[i] + particles.radius[j];
-            let distance = self.displacement(particles.position[i], particles.position[j]).norm();
-            if distance < contact * (1.0 - tolerance) {
-                found(i, j, contact - distance);
-            }
-        };
-        for (place, &i) in order.iter().enumerate() {
-            let reach = x(i) + particles.radius[i];
-            for &j in order[place + 1..].iter().take_while(|&&j| x(j) - particles.radius[j] < reach) {
-                check(i, j);
-            }
-            // The images one side further up, of what lies at the lower face.
-            if self.axes[0] == Axis::Periodic {
-                for &j in order.iter().take_while(|&&j| x(j) - particles.radius[j] < reach - side) {
-                    if j != i {
-                        check(i, j);
-                    }
-                }
-            }
-        }
     }
 }
 

@@ -40,7 +40,7 @@ impl<const D: usize> EventDriven<D> {
     }
 
     fn mass(&self, i: usize) -> f64 {
-        self.bodies[self.slots[i] as usize].mass
+        self.plans[self.slots[i] as usize].mass
     }
 
     /// Bytes held in all, for everything that grows with the number of particles.
@@ -48,7 +48,7 @@ impl<const D: usize> EventDriven<D> {
         self.flights.capacity() * size_of::<Flight<D>>()
             + self.plans.capacity() * size_of::<Plan>()
             + self.bodies.capacity() * size_of::<Body<D>>()
-            + (self.met.capacity() + self.ids.capacity() + self.slots.capacity()) * size_of::<u32>()
+            + (self.met.capacity() + self.slots.capacity()) * size_of::<u32>()
             + self.calendar.memory()
             + self.neighbours.memory()
     }

@@ -1,5 +1,7 @@
 //! Which particle's event comes next: a calendar queue with one entry a particle.
 
+use crate::lanes::prefetch;
+
 const NONE: u32 = u32::MAX;
 /// Stands for the previous entry of one that is in no list.
 const OUT: u32 = u32::MAX - 1;
@@ -56,10 +58,10 @@ impl Calendar {
         }
     }
 
-    /// Replaces all entries, and fits the width of the days to them: one event a day on average.
-    pub(crate) fn fill(&mut self, now: f64, times: impl Iterator<Item = f64>, ranks: &[u32]) {
-        self.ranks.copy_from_slice(ranks);
-        for (entry, time) in self.entries.iter_mut().zip(times) {
+    /// Replaces all entries by these times and ranks, and fits the width of the days to them: one event a day on average.
+    pub(crate) fn fill(&mut self, now: f64, times: impl Iterator<Item = (f64, u32)>) {
+        for ((entry, rank), (time, its_rank)) in self.entries.iter_mut().zip(&mut self.ranks).zip(times) {
+            *rank = its_rank;
             // Adding zero turns a negative zero into a positive one.
             entry.time = time + 0.0;
         }
@@ -118,6 +120,33 @@ impl Calendar {
                 return None;
             }
             self.turn_the_page();
+        }
+    }
+
+    #[inline]
+    pub(crate) fn day(&self) -> u64 {
+        self.day
+    }
+
+    /// Visits particles whose events come up on a day of this year: what to get ready.
+    #[inline]
+    pub(crate) fn scout(&self, day: u64, mut visit: impl FnMut(usize)) {
+        let mut i = self.heads[(day & (self.days() - 1)) as usize];
+        for _ in 0..4 {
+            if i == NONE {
+                break;
+            }
+            visit(i as usize);
+            i = self.entries[i as usize].next;
+        }
+    }
+
+    /// Asks for the first entry of a day.
+    #[inline]
+    pub(crate) fn prefetch(&self, day: u64) {
+        let head = self.heads[(day & (self.days() - 1)) as usize];
+        if head != NONE {
+            prefetch(&self.entries, head as usize);
         }
     }
 
@@ -296,7 +325,7 @@ mod tests {
             };
             let mut times: Vec<f64> = (0..n).map(|_| draw(0.0)).collect();
             let mut calendar = Calendar::new(n);
-            calendar.fill(0.0, times.iter().copied(), &(0..n as u32).collect::<Vec<_>>());
+            calendar.fill(0.0, times.iter().copied().zip(0..));
             let mut now = 0.0;
             for step in 0..20_000 {
                 let until = if step % 3 == 0 { now + 0.01 } else { f64::MAX };

@@ -1,8 +1,10 @@
 //! Contacts: impulses and what is planned afterwards.
+#![allow(clippy::inline_always, reason = "what no observer looks at is then not computed")]
 
 use corpuscle_core::{Contact, Meeting, Party};
 
 use crate::engine::EventDriven;
+use crate::plan::Plan;
 use crate::search::Neighbour;
 
 impl<const D: usize> EventDriven<D> {
@@ -10,16 +12,16 @@ impl<const D: usize> EventDriven<D> {
     /// normal `k` and the reduced mass `mu = m1 m2 / (m1 + m2)`.
     ///
     /// The partner of lower index is the first, so the result does not depend on whose event it was.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn collide<const FIELD: bool>(&mut self, i: usize, partner: Neighbour) -> Contact<D> {
         let (j, shift) = (partner.slot(), self.images.shift(partner));
-        let (i, j, shift) = if self.ids[i] < self.ids[j] { (i, j, shift) } else { (j, i, -shift) };
+        let (i, j, shift) = if self.plans[i].id < self.plans[j].id { (i, j, shift) } else { (j, i, -shift) };
         self.counts.collisions += 1;
         self.count_stuck(i);
         self.count_stuck(j);
         self.settle(i);
         self.settle(j);
-        let (m1, m2) = (self.bodies[i].mass, self.bodies[j].mass);
+        let (m1, m2) = (self.plans[i].mass, self.plans[j].mass);
         let (v1, v2) = (self.flights[i].velocity, self.flights[j].velocity);
         let r = self.flights[j].position - self.flights[i].position + shift;
         let distance = r.norm();
@@ -57,7 +59,7 @@ impl<const D: usize> EventDriven<D> {
         let with = surface.meeting;
         let before = self.flights[i].velocity;
         let approach = before.dot(k);
-        let mass = self.bodies[i].mass;
+        let mass = self.plans[i].mass;
         let change = ((1.0 + self.rules.restitution_at(approach)) * approach).max(0.0);
         self.flights[i].velocity = before - k * change;
         self.stamp(i);
@@ -90,10 +92,11 @@ impl<const D: usize> EventDriven<D> {
         self.plans[i].stuck = if self.flights[i].time == self.now { self.plans[i].stuck.saturating_add(1) } else { 0 };
     }
 
-    #[inline]
+    #[inline(always)]
     fn party(&self, i: usize, before: corpuscle_core::Vector<D>) -> Party<D> {
         let flight = &self.flights[i];
-        let position = self.boundary.wrap(flight.position);
-        Party { index: self.ids[i] as usize, mass: self.bodies[i].mass, position, before, after: flight.velocity }
+        let position = self.boundary.wrap_near(flight.position);
+        let Plan { id, mass, .. } = self.plans[i];
+        Party { index: id as usize, mass, position, before, after: flight.velocity }
     }
 }

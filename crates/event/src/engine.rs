@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use corpuscle_core::{Axis, Boundary, Engine, Failure, Invalid, Observer, Particles, Vector};
 
 use crate::calendar::Calendar;
+use crate::lanes::prefetch;
 use crate::motion::Flight;
 use crate::neighbours::{Candidates, Neighbours};
 use crate::order::place_on_curve;
@@ -47,8 +48,7 @@ pub struct EventDriven<const D: usize> {
     pub(crate) bodies: Vec<Body<D>>,
     /// Number of the surface each particle meets next; empty if there are none.
     pub(crate) met: Vec<u32>,
-    /// Particles are stored in the order of a curve through the box: who is in each place, and the place of each.
-    pub(crate) ids: Vec<u32>,
+    /// Particles are stored in the order of a curve through the box: the place of each.
     pub(crate) slots: Vec<u32>,
     pub(crate) neighbours: Neighbours<D>,
     pub(crate) candidates: Candidates,
@@ -63,18 +63,22 @@ pub struct EventDriven<const D: usize> {
     pub(crate) time: f64,
     pub(crate) counts: Counts,
     next_epoch: u64,
+    /// The last day of the calendar that was got ready for.
+    ready: u64,
 }
 
-/// What a particle is, and how often it went around the periodic box: rarely needed.
+/// The species of a particle, and how often it went around the periodic box: rarely needed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Body<const D: usize> {
-    pub(crate) mass: f64,
     pub(crate) images: [i32; D],
     pub(crate) species: u16,
 }
 
 /// A particle may have this many contacts at one instant before the clock counts as stalled.
 const STUCK: u16 = 10_000;
+
+/// More particles than this are more than a processor's inner caches hold.
+const LARGE: usize = 8_000;
 
 impl<const D: usize> EventDriven<D> {
     /// An engine at time 0.
@@ -101,7 +105,7 @@ impl<const D: usize> EventDriven<D> {
             time: 0.0,
             radius: particles.radius[i],
         };
-        let body = |i: usize| Body { mass: particles.mass[i], images: [0; D], species: particles.species[i] };
+        let body = |i: usize| Body { images: [0; D], species: particles.species[i] };
         let n = particles.len();
         let flights: Vec<_> = (0..n).map(flight).collect();
         let images = Images::new(boundary.extent());
@@ -113,10 +117,9 @@ impl<const D: usize> EventDriven<D> {
             instructions: Instructions::of_this_processor(),
             surfaces: surfaces(&boundary),
             flights,
-            plans: vec![Plan::IDLE; n],
+            plans: (0..n).map(|i| Plan::idle(i, particles.mass[i])).collect(),
             bodies: (0..n).map(body).collect(),
             met: vec![],
-            ids: (0..n as u32).collect(),
             slots: (0..n as u32).collect(),
             calendar: Calendar::new(n),
             boundary,
@@ -126,6 +129,7 @@ impl<const D: usize> EventDriven<D> {
             time: 0.0,
             counts: Counts::default(),
             next_epoch: 0,
+            ready: 0,
         };
         engine.next_epoch = engine.contacts_per_epoch();
         engine.begin_anew();
@@ -223,13 +227,12 @@ impl<const D: usize> EventDriven<D> {
     fn sort(&mut self) {
         let place = |i: usize| place_on_curve(&self.boundary, self.flights[i].position_at(self.now, self.rules.field));
         let mut order: Vec<(u64, u32)> = (0..self.flights.len()).map(|i| (place(i), i as u32)).collect();
-        order.sort_unstable_by_key(|&(place, i)| (place, self.ids[i as usize]));
+        order.sort_unstable_by_key(|&(place, i)| (place, self.plans[i as usize].id));
         arrange(&mut self.flights, &order);
         arrange(&mut self.plans, &order);
         arrange(&mut self.bodies, &order);
-        arrange(&mut self.ids, &order);
-        for (slot, &id) in self.ids.iter().enumerate() {
-            self.slots[id as usize] = slot as u32;
+        for (slot, plan) in self.plans.iter().enumerate() {
+            self.slots[plan.id as usize] = slot as u32;
         }
     }
 
@@ -250,10 +253,44 @@ impl<const D: usize> EventDriven<D> {
         self.begin_anew();
     }
 
+    /// Asks for what the events of the coming days will need, in steps, since each step tells where the next one is. So a
+    /// large system does not wait for its memory.
+    #[inline]
+    fn get_ready(&mut self) {
+        let today = self.calendar.day();
+        // After a leap only the last days matter.
+        for day in self.ready.max(today.saturating_sub(4)) + 1..=today {
+            self.calendar.prefetch(day + 8);
+            self.calendar.scout(day + 6, |i| {
+                prefetch(&self.plans, i);
+                prefetch(&self.flights, i);
+                self.neighbours.prefetch_place(i);
+            });
+            self.calendar.scout(day + 4, |i| {
+                let partner = self.plans[i].pair.neighbour.slot();
+                prefetch(&self.plans, partner);
+                prefetch(&self.flights, partner);
+                self.neighbours.prefetch_place(partner);
+                self.neighbours.prefetch_around(i, &self.flights);
+            });
+            self.calendar.scout(day + 2, |i| {
+                let partner = self.plans[i].pair.neighbour.slot();
+                if partner < self.flights.len() {
+                    self.neighbours.prefetch_around(partner, &self.flights);
+                }
+            });
+        }
+        self.ready = today;
+    }
+
     fn run<const FIELD: bool, O: Observer<D>>(&mut self, to: f64, observer: &mut O) -> Result<ControlFlow<()>, Failure> {
+        let large = self.flights.len() > LARGE;
         while let Some((time, i)) = self.calendar.take(to - self.epoch) {
             self.now = time;
             let i = i as usize;
+            if large {
+                self.get_ready();
+            }
             let plan = &self.plans[i];
             let contact = if plan.pair.time == time {
                 let partner = plan.pair.neighbour;
@@ -330,7 +367,7 @@ impl<const D: usize> Engine<D> for EventDriven<D> {
         particles.velocity.clear();
         particles.velocity.extend((0..n).map(|i| self.velocity(i)));
         particles.mass.clear();
-        particles.mass.extend(self.slots.iter().map(|&i| self.bodies[i as usize].mass));
+        particles.mass.extend(self.slots.iter().map(|&i| self.plans[i as usize].mass));
         particles.radius.clear();
         particles.radius.extend(self.slots.iter().map(|&i| self.flights[i as usize].radius));
         particles.species.clear();

@@ -34,6 +34,24 @@ impl<const D: usize> Neighbours<D> {
             .map_or_else(|| Self::Cells(Cells::new(boundary, flights, &position)), Self::Lists)
     }
 
+    /// Asks for the place of a particle.
+    #[inline]
+    pub(crate) fn prefetch_place(&self, i: usize) {
+        match self {
+            Self::Cells(cells) => cells.prefetch_place(i),
+            Self::Lists(lists) => lists.prefetch_row(i),
+        }
+    }
+
+    /// Asks for what a search around a particle reads.
+    #[inline]
+    pub(crate) fn prefetch_around(&self, i: usize, flights: &[Flight<D>]) {
+        match self {
+            Self::Cells(cells) => cells.prefetch_around(i),
+            Self::Lists(lists) => lists.prefetch_neighbours(i, flights),
+        }
+    }
+
     /// Bytes held.
     pub(crate) fn memory(&self) -> usize {
         match self {

@@ -18,18 +18,25 @@ pub(crate) struct Plan {
     pub(crate) stuck: u16,
     /// Counts the changes of this particle's flight.
     pub(crate) stamp: u32,
+    /// Who the particle is to the outside, and its mass: kept here since every contact reads this line.
+    pub(crate) id: u32,
+    pub(crate) mass: f64,
 }
 
 impl Plan {
-    pub(crate) const IDLE: Self = Self {
-        pair: Meet::NEVER,
-        pair_stamp: 0,
-        surface_time: f64::INFINITY,
-        exit_time: f64::INFINITY,
-        exit: Exit(0),
-        stuck: 0,
-        stamp: 0,
-    };
+    pub(crate) fn idle(id: usize, mass: f64) -> Self {
+        Self {
+            pair: Meet::NEVER,
+            pair_stamp: 0,
+            surface_time: f64::INFINITY,
+            exit_time: f64::INFINITY,
+            exit: Exit(0),
+            stuck: 0,
+            stamp: 0,
+            id: id as u32,
+            mass,
+        }
+    }
 
     /// Time of the earliest event.
     #[inline]

@@ -22,7 +22,7 @@ impl<const D: usize> EventDriven<D> {
                 self.plan::<true>(i);
             }
         }
-        self.calendar.fill(self.now, self.plans.iter().map(Plan::next_time), &self.ids);
+        self.calendar.fill(self.now, self.plans.iter().map(|plan| (plan.next_time(), plan.id)));
     }
 
     /// The state of a particle has changed: plans all it is going to do.
@@ -59,7 +59,7 @@ impl<const D: usize> EventDriven<D> {
             }
         };
         let view = View { flights: &self.flights, images: &self.images, field: self.rules.field };
-        let found = search::<D, FIELD>(&view, self.instructions, &self.ids, i, self.now, words, images);
+        let found = search::<D, FIELD>(&view, self.instructions, &self.plans, i, self.now, words, images);
         self.keep(i, found);
     }
 
@@ -167,8 +167,8 @@ impl<const D: usize> EventDriven<D> {
         let images = self.candidates.images;
         let words = self.candidates.padded(Neighbour::new(i as u32, home::<D>()));
         let view = View { flights: &self.flights, images: &self.images, field: self.rules.field };
-        let found = search::<D, FIELD>(&view, self.instructions, &self.ids, i, self.now, words, images);
-        if earlier(found, self.plans[i].pair, &self.ids) {
+        let found = search::<D, FIELD>(&view, self.instructions, &self.plans, i, self.now, words, images);
+        if earlier(found, self.plans[i].pair, &self.plans) {
             self.keep(i, found);
         }
         self.plan_exit::<FIELD>(i);
@@ -193,8 +193,8 @@ impl<const D: usize> EventDriven<D> {
 
 /// Earlier, or at the same time with a partner that comes first.
 #[inline]
-fn earlier(a: Meet, b: Meet, ids: &[u32]) -> bool {
-    let rank = |neighbour: Neighbour| (ids.get(neighbour.slot()).copied(), neighbour.image());
+fn earlier(a: Meet, b: Meet, plans: &[Plan]) -> bool {
+    let rank = |neighbour: Neighbour| (plans.get(neighbour.slot()).map(|plan| plan.id), neighbour.image());
     a.time < b.time || (a.time == b.time && a.time < f64::INFINITY && rank(a.neighbour) < rank(b.neighbour))
 }
 
@@ -203,7 +203,7 @@ fn earlier(a: Meet, b: Meet, ids: &[u32]) -> bool {
 fn search<const D: usize, const FIELD: bool>(
     view: &View<'_, D>,
     instructions: crate::search::Instructions,
-    ids: &[u32],
+    plans: &[Plan],
     i: usize,
     now: f64,
     words: &[u32],
@@ -215,21 +215,21 @@ fn search<const D: usize, const FIELD: bool>(
     } else {
         view.earliest::<FIELD, false>(instructions, me, words, images)
     };
-    if tied { among_equals::<D, FIELD>(view, ids, me, words) } else { found }
+    if tied { among_equals::<D, FIELD>(view, plans, me, words) } else { found }
 }
 
 /// The same when some come at exactly the same time: one by one, so that the order of the candidates shows nowhere.
 #[cold]
 fn among_equals<const D: usize, const FIELD: bool>(
     view: &View<'_, D>,
-    ids: &[u32],
+    plans: &[Plan],
     me: &crate::motion::Flight<D>,
     words: &[u32],
 ) -> Meet {
     let mut found = Meet::NEVER;
     for neighbour in words.iter().copied().map(Neighbour::from_word) {
         let meet = Meet { time: view.contact::<FIELD>(me, neighbour), neighbour };
-        if earlier(meet, found, ids) {
+        if earlier(meet, found, plans) {
             found = meet;
         }
     }

@@ -95,9 +95,6 @@ pub(crate) struct View<'a, const D: usize> {
     pub(crate) field: Vector<D>,
 }
 
-/// Blocks that are treated together.
-const BLOCKS: usize = 8;
-
 /// The instructions the processor has, asked once.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Instructions {
@@ -174,32 +171,51 @@ impl<const D: usize> View<'_, D> {
     ) -> (Meet, bool) {
         let me = Me::<V, D>::new(me);
         let (mut best, mut tied) = (Meet::NEVER, false);
-        for part in candidates.chunks(BLOCKS * LANES) {
-            // First all approaches, then all times: the long chain from square root to division is paid once, not for each
-            // block, since a processor can look only so far ahead.
-            let blocks = part.as_chunks::<LANES>().0;
-            let mut approaches = [Approach { reference: me.time, b: me.time, c: me.time, disc: me.time }; BLOCKS];
-            for (approach, four) in approaches.iter_mut().zip(blocks) {
-                *approach = self.approach::<V, FIELD, FRESH, IMAGES>(&me, &four.map(Neighbour::from_word));
-            }
-            let mut times = [V::splat(f64::INFINITY); BLOCKS];
-            let mut least = V::splat(f64::INFINITY);
-            for (time, approach) in times.iter_mut().zip(&approaches[..blocks.len()]) {
-                *time = approach.contact();
-                least = time.min(least);
-            }
-            let time = least.least();
+        for part in candidates.chunks(4 * LANES) {
+            // The number of blocks is known to the compiler, so that everything stays in registers.
+            let (time, which) = match part.len() / LANES {
+                1 => self.blocks::<V, FIELD, FRESH, IMAGES, 1>(&me, part),
+                2 => self.blocks::<V, FIELD, FRESH, IMAGES, 2>(&me, part),
+                3 => self.blocks::<V, FIELD, FRESH, IMAGES, 3>(&me, part),
+                _ => self.blocks::<V, FIELD, FRESH, IMAGES, 4>(&me, part),
+            };
             if time > best.time || time == f64::INFINITY {
                 continue;
-            }
-            let mut which = 0u64;
-            for (number, block) in times[..blocks.len()].iter().enumerate() {
-                which |= u64::from(V::bits(block.equal(V::splat(time)))) << (LANES * number);
             }
             tied = time == best.time || which & (which - 1) != 0;
             best = Meet { time, neighbour: Neighbour::from_word(part[which.trailing_zeros() as usize % part.len()]) };
         }
         (best, tied)
+    }
+
+    /// The earliest collision among `N` blocks of candidates, and which of them it is: a bit for each.
+    ///
+    /// First all approaches, then all times: so the long chain from square root to division is paid once, not for each
+    /// block, since a processor looks only so far ahead.
+    #[inline(always)]
+    fn blocks<V: Lanes, const FIELD: bool, const FRESH: bool, const IMAGES: bool, const N: usize>(
+        &self,
+        me: &Me<V, D>,
+        candidates: &[u32],
+    ) -> (f64, u32) {
+        let blocks = candidates.as_chunks::<LANES>().0;
+        // Loops, not closures: those are compiled as functions of their own, without vector instructions.
+        let nothing = V::splat(0.0);
+        let mut approaches = [Approach { reference: nothing, b: nothing, c: nothing, disc: nothing }; N];
+        for (approach, block) in approaches.iter_mut().zip(blocks) {
+            *approach = self.approach::<V, FIELD, FRESH, IMAGES>(me, &block.map(Neighbour::from_word));
+        }
+        let (mut times, mut least) = ([nothing; N], V::splat(f64::INFINITY));
+        for (time, approach) in times.iter_mut().zip(&approaches) {
+            *time = approach.contact();
+            least = time.min(least);
+        }
+        let time = least.least();
+        let mut which = 0;
+        for (number, block) in times.iter().enumerate() {
+            which |= V::bits(block.equal(V::splat(time))) << (LANES * number);
+        }
+        (time, which)
     }
 
     /// How `me` approaches each of four others.

@@ -2,29 +2,27 @@
 
 use corpuscle_core::{Axis, Boundary, Vector};
 
-use crate::lanes::LANES;
+use crate::lanes::{LANES, prefetch};
 use crate::search::{Neighbour, home};
 
 pub(crate) const NONE: u32 = u32::MAX;
-/// Particles that a cell holds side by side.
-const SLOTS: usize = 3;
-/// Words of a cell: its slots and how many are filled.
-const WORDS: usize = SLOTS + 1;
 
 /// Cells over the box, each with the particles that were put into it.
 ///
 /// A periodic neighbour comes with the number of its image, so boxes of one or two cells are exact as well. Across open
 /// axes the outermost cells have no end.
 #[derive(Clone, Debug)]
-pub(crate) struct Bins<const D: usize> {
+pub(crate) struct Bins<const D: usize, const WORDS: usize> {
     pub(crate) lower: Vector<D>,
     pub(crate) width: Vector<D>,
     pub(crate) axes: [Axis; D],
     pub(crate) cells: [u32; D],
     stride: [u32; D],
-    content: Vec<Cell>,
-    /// Coordinates of the faces between cells along each axis; infinite at the ends of the box where nothing is beyond.
-    faces: [Vec<f64>; D],
+    content: Vec<Cell<WORDS>>,
+    /// Coordinates of the faces between cells along all axes; infinite at the ends of the box where nothing is beyond.
+    faces: Vec<f64>,
+    /// Where those of each axis begin.
+    first_face: [u32; D],
     places: Vec<Place<D>>,
     /// The way to all neighbour cells, and to those that are new after a step down or up along an axis.
     around: Vec<Way<D>>,
@@ -43,26 +41,12 @@ struct Way<const D: usize> {
 /// Index contribution of a neighbour that does not exist: it lifts the sum beyond every cell.
 const OUTSIDE: u32 = 1 << 30;
 
-/// The particles of a cell, side by side so that they can be copied without looking how many there are.
+/// The particles of a cell, side by side so that they can be copied without looking how many there are; in the last word
+/// how many.
 ///
-/// They are stored as words, in the image of the box itself. In an overfull cell (`filled` is `WORDS`) the last slot
-/// holds the head of a list threaded through the particles.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(16))]
-struct Cell {
-    slots: [u32; SLOTS],
-    filled: u32,
-}
-
-impl Cell {
-    const EMPTY: Self = Self { slots: [NONE; SLOTS], filled: 0 };
-
-    /// All four words, in one piece.
-    #[inline]
-    fn words(&self) -> [u32; WORDS] {
-        [self.slots[0], self.slots[1], self.slots[2], self.filled]
-    }
-}
+/// They are stored as words, in the image of the box itself. In an overfull cell (whose last word is `WORDS`) the last but
+/// one holds the head of a list threaded through the particles.
+type Cell<const WORDS: usize> = [u32; WORDS];
 
 /// Where a particle is: its cell, and the one after it in the list of an overfull cell.
 #[derive(Clone, Copy, Debug)]
@@ -120,7 +104,10 @@ impl Candidates {
     }
 }
 
-impl<const D: usize> Bins<D> {
+impl<const D: usize, const WORDS: usize> Bins<D, WORDS> {
+    /// Particles that a cell holds side by side.
+    const SLOTS: usize = WORDS - 1;
+
     /// Cells at least `width` wide, with room for particles `0..count`; no more than about `most` of them.
     pub(crate) fn new(boundary: &Boundary<D>, mut width: f64, count: usize, most: f64) -> Self {
         let extent = boundary.extent();
@@ -144,22 +131,23 @@ impl<const D: usize> Bins<D> {
             })
             .collect();
         let width = Vector::from_fn(|k| extent[k] / f64::from(cells[k]));
-        let faces = std::array::from_fn(|k| {
-            let periodic = boundary.axes[k] == Axis::Periodic;
-            let ends = |open: f64, face: f64| if periodic { face } else { open };
-            let mut faces: Vec<f64> = (0..=cells[k]).map(|c| boundary.lower[k] + f64::from(c) * width[k]).collect();
-            faces[0] = ends(f64::NEG_INFINITY, boundary.lower[k]);
-            faces[cells[k] as usize] = ends(f64::INFINITY, boundary.upper[k]);
-            faces
-        });
+        let (mut faces, mut first_face) = (vec![], [0; D]);
+        for k in 0..D {
+            first_face[k] = faces.len() as u32;
+            let end = |open: f64, face: f64| if boundary.axes[k] == Axis::Periodic { face } else { open };
+            faces.push(end(f64::NEG_INFINITY, boundary.lower[k]));
+            faces.extend((1..cells[k]).map(|c| boundary.lower[k] + f64::from(c) * width[k]));
+            faces.push(end(f64::INFINITY, boundary.upper[k]));
+        }
         Self {
             lower: boundary.lower,
             width,
             axes: boundary.axes,
             cells,
             stride,
-            content: vec![Cell::EMPTY; total],
+            content: vec![[0; WORDS]; total],
             faces,
+            first_face,
             places: vec![Place { next: NONE, cell: [0; D] }; count],
             ahead: std::array::from_fn(|k| {
                 [0, 2].map(|layer| around.iter().copied().filter(|way| way.layer[k] == layer).collect())
@@ -194,9 +182,9 @@ impl<const D: usize> Bins<D> {
     /// Infinity where nothing is beyond: the cell has no end, or a wall comes first.
     #[inline]
     pub(crate) fn face(&self, i: usize, axis: usize, up: bool) -> (f64, bool) {
-        let number = self.places[i].cell[axis] as usize + usize::from(up);
-        let end = if up { self.cells[axis] as usize } else { 0 };
-        (self.faces[axis][number], number == end)
+        let number = u32::from(self.places[i].cell[axis]) + u32::from(up);
+        let end = if up { self.cells[axis] } else { 0 };
+        (self.faces[(self.first_face[axis] + number) as usize], number == end)
     }
 
     /// Puts a particle into the list of its cell.
@@ -204,9 +192,10 @@ impl<const D: usize> Bins<D> {
     pub(crate) fn insert(&mut self, i: usize) {
         let index = self.index(self.places[i].cell);
         let cell = &mut self.content[index];
-        if let Some(slot) = cell.slots.get_mut(cell.filled as usize) {
-            *slot = word::<D>(i);
-            cell.filled += 1;
+        let filled = cell[Self::SLOTS] as usize;
+        if filled < Self::SLOTS {
+            cell[filled] = word::<D>(i);
+            cell[Self::SLOTS] += 1;
         } else {
             self.insert_into_list(index, i);
         }
@@ -215,12 +204,11 @@ impl<const D: usize> Bins<D> {
     #[cold]
     fn insert_into_list(&mut self, index: usize, i: usize) {
         let cell = &mut self.content[index];
-        let last = &mut cell.slots[SLOTS - 1];
-        if cell.filled as usize == SLOTS {
-            self.places[slot(*last)].next = NONE;
-            cell.filled += 1;
+        if cell[Self::SLOTS] as usize == Self::SLOTS {
+            self.places[slot(cell[Self::SLOTS - 1])].next = NONE;
+            cell[Self::SLOTS] += 1;
         }
-        self.places[i].next = std::mem::replace(last, word::<D>(i));
+        self.places[i].next = std::mem::replace(&mut cell[Self::SLOTS - 1], word::<D>(i));
     }
 
     /// Takes a particle out of the list of its cell.
@@ -228,27 +216,27 @@ impl<const D: usize> Bins<D> {
     pub(crate) fn remove(&mut self, i: usize) {
         let index = self.index(self.places[i].cell);
         let cell = &mut self.content[index];
-        let filled = cell.filled as usize;
-        if filled > SLOTS {
+        let filled = cell[Self::SLOTS] as usize;
+        if filled > Self::SLOTS {
             return self.remove_from_list(index, i);
         }
         // The last one takes the place; without a branch, since any of them may be the one.
-        let last = cell.slots[(filled + SLOTS - 1) % SLOTS];
-        for slot in &mut cell.slots {
+        let last = cell[filled - 1];
+        for slot in &mut cell[..Self::SLOTS] {
             *slot = if *slot == word::<D>(i) { last } else { *slot };
         }
-        cell.filled -= 1;
+        cell[Self::SLOTS] -= 1;
     }
 
     #[cold]
     fn remove_from_list(&mut self, index: usize, i: usize) {
         let cell = &mut self.content[index];
-        let head = slot(cell.slots[SLOTS - 1]);
-        if let Some(slot) = cell.slots[..SLOTS - 1].iter_mut().find(|slot| **slot == word::<D>(i)) {
+        let head = slot(cell[Self::SLOTS - 1]);
+        if let Some(slot) = cell[..Self::SLOTS - 1].iter_mut().find(|slot| **slot == word::<D>(i)) {
             *slot = word::<D>(head);
-            cell.slots[SLOTS - 1] = self.places[head].next;
+            cell[Self::SLOTS - 1] = self.places[head].next;
         } else if head == i {
-            cell.slots[SLOTS - 1] = self.places[i].next;
+            cell[Self::SLOTS - 1] = self.places[i].next;
         } else {
             let mut before = head;
             while self.places[before].next != word::<D>(i) {
@@ -257,8 +245,8 @@ impl<const D: usize> Bins<D> {
             self.places[before].next = self.places[i].next;
         }
         // One particle left in the list is no list any more.
-        if self.places[slot(cell.slots[SLOTS - 1])].next == NONE {
-            cell.filled = SLOTS as u32;
+        if self.places[slot(cell[Self::SLOTS - 1])].next == NONE {
+            cell[Self::SLOTS] -= 1;
         }
     }
 
@@ -310,11 +298,11 @@ impl<const D: usize> Bins<D> {
         let mut overfull = 0;
         for way in ways {
             let cell = self.content[(index + way.step) as usize];
-            list[count..][..WORDS].copy_from_slice(&cell.words());
-            count += cell.filled as usize;
-            overfull |= cell.filled;
+            list[count..][..WORDS].copy_from_slice(&cell);
+            count += cell[Self::SLOTS] as usize;
+            overfull |= cell[Self::SLOTS];
         }
-        if overfull > SLOTS as u32 {
+        if overfull as usize & WORDS != 0 {
             return ways.iter().for_each(|way| self.collect_cell((index + way.step) as usize, 0, found));
         }
         found.count = count;
@@ -347,10 +335,10 @@ impl<const D: usize> Bins<D> {
     #[inline]
     fn collect_cell(&self, index: usize, away: u32, found: &mut Candidates) {
         let cell = self.content[index];
-        let words = cell.words().map(|word| word.wrapping_add(away));
+        let words = cell.map(|word| word.wrapping_add(away));
         found.list[found.count..][..WORDS].copy_from_slice(&words);
-        found.count += cell.filled as usize;
-        if cell.filled > SLOTS as u32 {
+        found.count += cell[Self::SLOTS] as usize;
+        if cell[Self::SLOTS] as usize > Self::SLOTS {
             self.collect_list(index, away, found);
         }
     }
@@ -358,7 +346,7 @@ impl<const D: usize> Bins<D> {
     #[cold]
     fn collect_list(&self, index: usize, away: u32, found: &mut Candidates) {
         found.count -= 2;
-        let mut word = self.content[index].slots[SLOTS - 1];
+        let mut word = self.content[index][Self::SLOTS - 1];
         while word != NONE {
             found.reserve(1 + WORDS * self.around.len());
             found.list[found.count] = word.wrapping_add(away);
@@ -394,9 +382,23 @@ impl<const D: usize> Bins<D> {
         Some((index as usize, image))
     }
 
+    #[inline]
+    pub(crate) fn prefetch_place(&self, i: usize) {
+        prefetch(&self.places, i);
+    }
+
+    /// Asks for the cells around a particle's: a row of three lies in one piece.
+    #[inline]
+    pub(crate) fn prefetch_around(&self, i: usize) {
+        let index = self.index(self.places[i].cell) as i32;
+        for row in self.around.iter().step_by(3) {
+            prefetch(&self.content, (index + row.step) as usize);
+        }
+    }
+
     /// Bytes held.
     pub(crate) fn memory(&self) -> usize {
-        self.content.capacity() * size_of::<Cell>() + self.places.capacity() * size_of::<Place<D>>()
+        self.content.capacity() * size_of::<Cell<WORDS>>() + self.places.capacity() * size_of::<Place<D>>()
     }
 }
 

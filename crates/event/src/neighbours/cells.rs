@@ -21,7 +21,7 @@ pub(crate) struct Cells<const D: usize> {
 
 #[derive(Clone, Debug)]
 struct Level<const D: usize> {
-    bins: Bins<D>,
+    bins: Bins<D, 4>,
     reach: Reach<D>,
 }
 
@@ -133,6 +133,16 @@ impl<const D: usize> Cells<D> {
     #[inline]
     pub(crate) fn face(&self, i: usize, level: usize, axis: usize, up: bool) -> (f64, bool) {
         self.levels[level].bins.face(i, axis, up)
+    }
+
+    #[inline]
+    pub(crate) fn prefetch_place(&self, i: usize) {
+        self.levels[0].bins.prefetch_place(i);
+    }
+
+    #[inline]
+    pub(crate) fn prefetch_around(&self, i: usize) {
+        self.levels[0].bins.prefetch_around(i);
     }
 
     pub(crate) fn memory(&self) -> usize {

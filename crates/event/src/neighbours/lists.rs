@@ -3,7 +3,7 @@
 use corpuscle_core::{Axis, Boundary, Vector};
 
 use super::bins::{Bins, Candidates};
-use crate::lanes::LANES;
+use crate::lanes::{LANES, prefetch};
 use crate::motion::Flight;
 use crate::search::{Images, Neighbour, home, opposite};
 
@@ -23,7 +23,7 @@ pub(crate) struct Lists<const D: usize> {
     half: f64,
     /// Boxes closer than this, squared, make neighbours.
     reach: f64,
-    bins: Bins<D>,
+    bins: Bins<D, 8>,
 }
 
 const HEAD: usize = 4;
@@ -102,7 +102,7 @@ impl<const D: usize> Lists<D> {
     #[inline]
     pub(crate) fn face(&self, i: usize, axis: usize, up: bool) -> f64 {
         let centre = f64::from(f32::from_bits(self.rows[i * self.stride + axis]));
-        if up { centre + self.half } else { centre - self.half }
+        centre + if up { self.half } else { -self.half }
     }
 
     /// Gives a particle a new box around where it is now, and the neighbours that come with it.
@@ -185,6 +185,19 @@ impl<const D: usize> Lists<D> {
             }
         }
         (self.rows, self.stride) = (rows, stride);
+    }
+
+    #[inline]
+    pub(crate) fn prefetch_row(&self, i: usize) {
+        prefetch(&self.rows, i * self.stride);
+        prefetch(&self.rows, i * self.stride + 16);
+    }
+
+    #[inline]
+    pub(crate) fn prefetch_neighbours(&self, i: usize, flights: &[Flight<D>]) {
+        for &word in self.neighbours(i).0 {
+            prefetch(flights, Neighbour::from_word(word).slot());
+        }
     }
 
     pub(crate) fn memory(&self) -> usize {

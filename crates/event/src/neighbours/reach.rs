@@ -46,7 +46,7 @@ struct Node {
 impl<const D: usize> Reach<D> {
     /// Registers the `larger` particles (slot and radius, sorted by slot), whose places `bins` knows; the others are at
     /// most of radius `largest_small`.
-    pub(crate) fn new(bins: &Bins<D>, larger: &[(usize, f64)], largest_small: f64) -> Self {
+    pub(crate) fn new(bins: &Bins<D, 4>, larger: &[(usize, f64)], largest_small: f64) -> Self {
         let mut reach = Self { heads: vec![], nodes: vec![], shapes: vec![], owners: vec![] };
         if larger.is_empty() {
             return reach;
@@ -71,7 +71,7 @@ impl<const D: usize> Reach<D> {
     }
 
     /// Puts a larger particle into the lists of the cells it can reach from where `bins` says it is.
-    pub(crate) fn register(&mut self, bins: &Bins<D>, slot: usize) {
+    pub(crate) fn register(&mut self, bins: &Bins<D, 4>, slot: usize) {
         let owner = self.owner(slot);
         let home = bins.cell(slot);
         for (number, &offset) in self.shapes[owner.shape as usize].offsets.iter().enumerate() {
@@ -114,7 +114,7 @@ impl<const D: usize> Reach<D> {
     }
 
     /// The small particles that a larger one can touch.
-    pub(crate) fn collect_smaller(&self, bins: &Bins<D>, slot: usize, found: &mut Candidates) {
+    pub(crate) fn collect_smaller(&self, bins: &Bins<D, 4>, slot: usize, found: &mut Candidates) {
         let home = bins.cell(slot);
         for &offset in &self.shapes[self.owner(slot).shape as usize].offsets {
             bins.collect_at(home, offset, found);
@@ -127,7 +127,7 @@ impl<const D: usize> Reach<D> {
 }
 
 /// Offsets of all cells in which a small particle can touch a sphere of this radius centred in the cell of offset 0.
-fn offsets<const D: usize>(bins: &Bins<D>, radius: f64, largest_small: f64) -> Vec<[i32; D]> {
+fn offsets<const D: usize>(bins: &Bins<D, 4>, radius: f64, largest_small: f64) -> Vec<[i32; D]> {
     let far = (radius + largest_small) * (1.0 + 1e-6);
     let near = radius * (1.0 - 1e-6);
     let reach: [i32; D] = std::array::from_fn(|k| (far / bins.width[k]).ceil() as i32);
