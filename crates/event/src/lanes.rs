@@ -218,9 +218,10 @@ mod x86 {
             debug_assert!(pair <= D, "a flight has 2 D + 2 numbers");
             // SAFETY: see the type. A flight is `repr(C)` and begins with 2 D + 2 numbers, of which two are loaded.
             unsafe {
-                let half = |flight: *const Flight<D>| _mm_loadu_pd(flight.cast::<f64>().add(2 * pair));
-                let ac = _mm256_insertf128_pd::<1>(_mm256_castpd128_pd256(half(a)), half(c));
-                let bd = _mm256_insertf128_pd::<1>(_mm256_castpd128_pd256(half(b)), half(d));
+                let start = |flight: &Flight<D>| std::ptr::from_ref(flight).cast::<f64>().add(2 * pair);
+                let (a, b, c, d) = (start(a), start(b), start(c), start(d));
+                let ac = _mm256_insertf128_pd::<1>(_mm256_castpd128_pd256(_mm_loadu_pd(a)), _mm_loadu_pd(c));
+                let bd = _mm256_insertf128_pd::<1>(_mm256_castpd128_pd256(_mm_loadu_pd(b)), _mm_loadu_pd(d));
                 [Self(_mm256_unpacklo_pd(ac, bd)), Self(_mm256_unpackhi_pd(ac, bd))]
             }
         }

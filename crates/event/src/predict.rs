@@ -1,7 +1,7 @@
 //! Planning: what a particle is going to meet, and when.
 
 use crate::engine::EventDriven;
-use crate::motion::upward_passage;
+use crate::motion::{Flight, upward_passage};
 use crate::neighbours::Neighbours;
 use crate::plan::{Exit, Plan};
 use crate::search::{Meet, Neighbour, View, home};
@@ -86,12 +86,14 @@ impl<const D: usize> EventDriven<D> {
     /// on the wrong side of a face does not go back and forth.
     #[inline]
     pub(crate) fn plan_exit<const FIELD: bool>(&mut self, i: usize) {
+        let flight = &self.flights[i];
         let mut best = (f64::INFINITY, Exit::new(0, 0, false, false));
         match &self.neighbours {
-            Neighbours::Lists(lists) => self.consider_exit::<FIELD>(i, 0, |axis, up| (lists.face(i, axis, up), false), &mut best),
+            Neighbours::Lists(lists) => best = self.exit::<FIELD>(flight, 0, |axis, up| (lists.face(i, axis, up), false)),
             Neighbours::Cells(cells) => {
                 for level in 0..cells.levels(i) {
-                    self.consider_exit::<FIELD>(i, level, |axis, up| cells.face(i, level, axis, up), &mut best);
+                    let exit = self.exit::<FIELD>(flight, level, |axis, up| cells.face(i, level, axis, up));
+                    best = if exit.0 < best.0 { exit } else { best };
                 }
             }
         }
@@ -99,21 +101,24 @@ impl<const D: usize> EventDriven<D> {
         (self.plans[i].exit_time, self.plans[i].exit) = (time, best.1);
     }
 
+    /// The first of the faces that a particle passes, two to an axis: `face(axis, up)` tells where it is and whether it is
+    /// a periodic face of the box.
     #[inline]
-    fn consider_exit<const FIELD: bool>(
+    fn exit<const FIELD: bool>(
         &self,
-        i: usize,
+        flight: &Flight<D>,
         level: usize,
         face: impl Fn(usize, bool) -> (f64, bool),
-        best: &mut (f64, Exit),
-    ) {
-        let (flight, field, now) = (&self.flights[i], self.rules.field, self.now);
+    ) -> (f64, Exit) {
+        let (field, now) = (self.rules.field, self.now);
+        // Directions are random: the first is found by arithmetic on bits, not by branches.
+        let (mut first, mut first_axis, mut ups, mut arounds) = (f64::INFINITY, 0, 0, 0);
         for axis in 0..D {
-            if FIELD && field[axis] != 0.0 {
-                for up in [false, true] {
+            let (time, up, around) = if FIELD && field[axis] != 0.0 {
+                [false, true].map(|up| {
                     let (face, around) = face(axis, up);
                     if face.is_infinite() {
-                        continue;
+                        return (f64::INFINITY, up, around);
                     }
                     // On a parabola an inner face may lie behind, passed before: it is looked at from where the particle
                     // is now. Faces of the box are always ahead, and are looked at from the stored state, which makes the
@@ -121,21 +126,26 @@ impl<const D: usize> EventDriven<D> {
                     let from = if around { flight.time } else { now };
                     let (r, v) = (flight.position_at(from, field)[axis], flight.velocity_at(from, field)[axis]);
                     let sign = if up { 1.0 } else { -1.0 };
-                    let time = from + upward_passage(sign * (face - r), sign * v, sign * field[axis]);
-                    if time < best.0 {
-                        *best = (time, Exit::new(level, axis, up, around));
-                    }
-                }
+                    (from + upward_passage(sign * (face - r), sign * v, sign * field[axis]), up, around)
+                })
+                .into_iter()
+                .fold((f64::INFINITY, false, false), |best, exit| if exit.0 < best.0 { exit } else { best })
             } else {
                 let v = flight.velocity[axis];
-                let up = v > 0.0;
+                let up = v.is_sign_positive();
                 let (face, around) = face(axis, up);
-                let time = if v == 0.0 { f64::INFINITY } else { flight.time + (face - flight.position[axis]) / v };
-                // Selected, not branched to: directions are random.
-                let earlier = time < best.0;
-                *best = (if earlier { time } else { best.0 }, if earlier { Exit::new(level, axis, up, around) } else { best.1 });
-            }
+                // At rest it takes practically for ever.
+                let speed = if v.abs() > f64::MIN_POSITIVE { v.abs() } else { f64::MIN_POSITIVE };
+                (flight.time + (face - flight.position[axis]) * 1f64.copysign(v) / speed, up, around)
+            };
+            let earlier = time < first;
+            first = if earlier { time } else { first };
+            let mask = usize::from(earlier).wrapping_neg();
+            first_axis = (axis & mask) | (first_axis & !mask);
+            ups |= usize::from(up) << axis;
+            arounds |= usize::from(around) << axis;
         }
+        (first, Exit::new(level, first_axis, ups >> first_axis & 1 == 1, arounds >> first_axis & 1 == 1))
     }
 
     /// The particle leaves its cell or its box.
@@ -223,7 +233,7 @@ fn search<const D: usize, const FIELD: bool>(
 fn among_equals<const D: usize, const FIELD: bool>(
     view: &View<'_, D>,
     plans: &[Plan],
-    me: &crate::motion::Flight<D>,
+    me: &Flight<D>,
     words: &[u32],
 ) -> Meet {
     let mut found = Meet::NEVER;

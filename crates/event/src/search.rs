@@ -233,8 +233,11 @@ impl<const D: usize> View<'_, D> {
     ) -> Approach<V> {
         let flights = four.map(|neighbour| &self.flights[neighbour.slot()]);
         // Position, time, velocity, radius.
-        let pairs: [[V; 2]; 4] = std::array::from_fn(|pair| V::columns(flights, pair.min(D)));
-        let number = |index: usize| pairs[index / 2][index % 2];
+        let mut numbers = [[V::splat(0.0); 2]; 4];
+        for (pair, columns) in numbers.iter_mut().enumerate().take(D + 1) {
+            *columns = V::columns(flights, pair);
+        }
+        let number = |index: usize| numbers[index / 2][index % 2];
         let own_time = number(D);
         let reference = if FRESH { me.time } else { me.time.max(own_time) };
         let (mine, its) = (reference.sub(me.time), reference.sub(own_time));
@@ -305,12 +308,11 @@ struct Me<V, const D: usize> {
 impl<V: Lanes, const D: usize> Me<V, D> {
     #[inline(always)]
     fn new(me: &Flight<D>) -> Self {
-        Self {
-            position: me.position.0.map(V::splat),
-            velocity: me.velocity.0.map(V::splat),
-            time: V::splat(me.time),
-            radius: V::splat(me.radius),
+        let (mut position, mut velocity) = ([V::splat(0.0); D], [V::splat(0.0); D]);
+        for k in 0..D {
+            (position[k], velocity[k]) = (V::splat(me.position[k]), V::splat(me.velocity[k]));
         }
+        Self { position, velocity, time: V::splat(me.time), radius: V::splat(me.radius) }
     }
 }
 

@@ -297,8 +297,8 @@ impl<const D: usize, const WORDS: usize> Bins<D, WORDS> {
         let (list, mut count) = (found.list.as_mut_slice(), found.count);
         let mut overfull = 0;
         for way in ways {
-            let cell = self.content[(index + way.step) as usize];
-            list[count..][..WORDS].copy_from_slice(&cell);
+            let cell = &self.content[(index + way.step) as usize];
+            list[count..][..WORDS].copy_from_slice(cell);
             count += cell[Self::SLOTS] as usize;
             overfull |= cell[Self::SLOTS];
         }
