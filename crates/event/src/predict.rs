@@ -104,32 +104,28 @@ impl<const D: usize> EventDriven<D> {
     /// The first of the faces that a particle passes, two to an axis: `face(axis, up)` tells where it is and whether it is
     /// a periodic face of the box.
     #[inline]
-    fn exit<const FIELD: bool>(
-        &self,
-        flight: &Flight<D>,
-        level: usize,
-        face: impl Fn(usize, bool) -> (f64, bool),
-    ) -> (f64, Exit) {
+    fn exit<const FIELD: bool>(&self, flight: &Flight<D>, level: usize, face: impl Fn(usize, bool) -> (f64, bool)) -> (f64, Exit) {
         let (field, now) = (self.rules.field, self.now);
         // Directions are random: the first is found by arithmetic on bits, not by branches.
         let (mut first, mut first_axis, mut ups, mut arounds) = (f64::INFINITY, 0, 0, 0);
         for axis in 0..D {
             let (time, up, around) = if FIELD && field[axis] != 0.0 {
-                [false, true].map(|up| {
-                    let (face, around) = face(axis, up);
-                    if face.is_infinite() {
-                        return (f64::INFINITY, up, around);
-                    }
-                    // On a parabola an inner face may lie behind, passed before: it is looked at from where the particle
-                    // is now. Faces of the box are always ahead, and are looked at from the stored state, which makes the
-                    // time a function of it alone.
-                    let from = if around { flight.time } else { now };
-                    let (r, v) = (flight.position_at(from, field)[axis], flight.velocity_at(from, field)[axis]);
-                    let sign = if up { 1.0 } else { -1.0 };
-                    (from + upward_passage(sign * (face - r), sign * v, sign * field[axis]), up, around)
-                })
-                .into_iter()
-                .fold((f64::INFINITY, false, false), |best, exit| if exit.0 < best.0 { exit } else { best })
+                [false, true]
+                    .map(|up| {
+                        let (face, around) = face(axis, up);
+                        if face.is_infinite() {
+                            return (f64::INFINITY, up, around);
+                        }
+                        // On a parabola an inner face may lie behind, passed before: it is looked at from where the particle
+                        // is now. Faces of the box are always ahead, and are looked at from the stored state, which makes the
+                        // time a function of it alone.
+                        let from = if around { flight.time } else { now };
+                        let (r, v) = (flight.position_at(from, field)[axis], flight.velocity_at(from, field)[axis]);
+                        let sign = if up { 1.0 } else { -1.0 };
+                        (from + upward_passage(sign * (face - r), sign * v, sign * field[axis]), up, around)
+                    })
+                    .into_iter()
+                    .fold((f64::INFINITY, false, false), |best, exit| if exit.0 < best.0 { exit } else { best })
             } else {
                 let v = flight.velocity[axis];
                 let up = v.is_sign_positive();
@@ -230,12 +226,7 @@ fn search<const D: usize, const FIELD: bool>(
 
 /// The same when some come at exactly the same time: one by one, so that the order of the candidates shows nowhere.
 #[cold]
-fn among_equals<const D: usize, const FIELD: bool>(
-    view: &View<'_, D>,
-    plans: &[Plan],
-    me: &Flight<D>,
-    words: &[u32],
-) -> Meet {
+fn among_equals<const D: usize, const FIELD: bool>(view: &View<'_, D>, plans: &[Plan], me: &Flight<D>, words: &[u32]) -> Meet {
     let mut found = Meet::NEVER;
     for neighbour in words.iter().copied().map(Neighbour::from_word) {
         let meet = Meet { time: view.contact::<FIELD>(me, neighbour), neighbour };

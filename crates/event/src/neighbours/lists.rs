@@ -29,11 +29,13 @@ pub(crate) struct Lists<const D: usize> {
 const HEAD: usize = 4;
 
 /// Half the side of a box, in units of the largest diameter. Measured: docs/performance.md.
-const HALF_SIDE: f64 = 0.2;
+const fn half_side<const D: usize>() -> f64 {
+    if D == 2 { 0.25 } else { 0.2 }
+}
 
 /// The packing fraction above which lists serve better than cells. Measured: docs/performance.md.
 const fn dense<const D: usize>() -> f64 {
-    if D == 2 { 0.5 } else { 0.4 }
+    if D == 2 { 0.62 } else { 0.4 }
 }
 
 impl<const D: usize> Lists<D> {
@@ -43,7 +45,7 @@ impl<const D: usize> Lists<D> {
         let smallest = flights.iter().map(|flight| flight.radius).fold(f64::INFINITY, f64::min);
         let volume = flights.iter().map(|flight| corpuscle_core::particles::ball_volume::<D>(flight.radius)).sum::<f64>();
         let packing = volume / boundary.volume();
-        let half = HALF_SIDE * 2.0 * radius;
+        let half = half_side::<D>() * 2.0 * radius;
         let reach = 2.0 * radius + 2.0 * half;
         let extent = boundary.extent();
         // Each neighbour in one image only, and centres as single-precision numbers fine enough.
