@@ -12,7 +12,7 @@ pub mod polynomial;
 pub mod rng;
 pub mod vector;
 
-pub use boundary::{Axis, Boundary, Hole, Partition};
+pub use boundary::{Axis, Boundary, Face, Hole, Motion, Obstacle, Partition, Piston};
 pub use engine::{Engine, Failure, Invalid};
 pub use observer::{Contact, Meeting, Observer, Party};
 pub use particles::Particles;

@@ -36,6 +36,18 @@ pub enum Meeting<const D: usize> {
         /// Index into [`Boundary::partitions`](crate::Boundary::partitions).
         index: usize,
     },
+    /// The obstacle of the given index.
+    Obstacle {
+        /// Index into [`Boundary::obstacles`](crate::Boundary::obstacles).
+        index: usize,
+    },
+    /// The piston.
+    Piston {
+        /// Its velocity along its axis just before.
+        before: f64,
+        /// Its velocity just after.
+        after: f64,
+    },
 }
 
 /// One collision, self-contained: the positions of all other particles are stale when it is reported.
@@ -49,7 +61,8 @@ pub struct Contact<const D: usize> {
     pub with: Meeting<D>,
     /// Unit normal, from the first particle towards what it met.
     pub normal: Vector<D>,
-    /// Magnitude `J >= 0` of the impulse: the first particle received `-J` along the normal.
+    /// Magnitude `J >= 0` of the impulse: the first particle received `-J` along the normal. (At a wall with a temperature
+    /// it gets a new tangential velocity, too.)
     pub impulse: f64,
     /// Distance between the centres at the contact; for a wall, from the centre to the wall.
     pub distance: f64,

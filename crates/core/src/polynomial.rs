@@ -6,38 +6,76 @@ pub fn evaluate(coefficients: &[f64], t: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |value, c| value * t + c)
 }
 
+/// The roots found, in ascending order: at most `N - 1` of a polynomial with `N` coefficients.
+#[derive(Clone, Copy, Debug)]
+pub struct Roots<const N: usize> {
+    values: [f64; N],
+    count: usize,
+}
+
+impl<const N: usize> std::ops::Deref for Roots<N> {
+    type Target = [f64];
+    fn deref(&self) -> &[f64] {
+        &self.values[..self.count]
+    }
+}
+
 /// All real roots in the open interval `(from, to)` where the polynomial changes its sign, in ascending order.
 ///
 /// Between two neighbouring roots of its derivative a polynomial is monotone, so that a sign change brackets exactly
-/// one root, which bisection finds to the last bit. The derivative's roots come from the same rule, down to degree 1:
-/// no root can be skipped, however close together they are.
-pub fn roots(coefficients: &[f64], from: f64, to: f64) -> Vec<f64> {
-    if coefficients.len() < 2 {
-        return vec![];
+/// one root. The derivative's roots come from the same rule, from the last
+/// derivative that is not constant upwards: no root can be skipped, however close together they are. Allocates nothing.
+pub fn roots<const N: usize>(coefficients: &[f64; N], from: f64, to: f64) -> Roots<N> {
+    let mut roots = Roots { values: [0.0; N], count: 0 };
+    for order in (0..N.saturating_sub(1)).rev() {
+        let (derivative, length) = (derivative(coefficients, order), N - order);
+        let mut found = Roots { values: [0.0; N], count: 0 };
+        let mut low = from;
+        for knot in 0..=roots.count {
+            let high = if knot < roots.count { roots.values[knot] } else { to };
+            if let Some(root) = bracketed(&derivative[..length], low, high) {
+                found.values[found.count] = root;
+                found.count += 1;
+            }
+            low = high;
+        }
+        roots = found;
     }
-    let derivative: Vec<f64> = coefficients.iter().enumerate().skip(1).map(|(power, c)| c * power as f64).collect();
-    let mut knots = vec![from];
-    knots.extend(roots(&derivative, from, to));
-    knots.push(to);
-    knots.windows(2).filter_map(|ends| bracketed(coefficients, ends[0], ends[1])).collect()
+    roots
 }
 
-/// The root in a bracket on which the polynomial is monotone.
+/// Coefficients of the derivative of this order, zeros behind them.
+fn derivative<const N: usize>(coefficients: &[f64; N], order: usize) -> [f64; N] {
+    std::array::from_fn(|power| {
+        let factor: usize = (power + 1..=power + order).product();
+        coefficients.get(power + order).map_or(0.0, |c| c * factor as f64)
+    })
+}
+
+/// The root in a bracket on which the polynomial is monotone: Newton's method, and bisection wherever that would leave
+/// the bracket or close in too slowly.
 fn bracketed(coefficients: &[f64], mut low: f64, mut high: f64) -> Option<f64> {
     let rising = evaluate(coefficients, high) > 0.0;
     if (evaluate(coefficients, low) > 0.0) == rising {
         return None;
     }
+    let (mut x, mut last_step) = (0.5 * (low + high), high - low);
     loop {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            return Some(high);
-        }
-        if (evaluate(coefficients, middle) > 0.0) == rising {
-            high = middle;
+        let (value, slope) = coefficients.iter().rev().fold((0.0, 0.0), |(p, q), c| (p * x + c, q * x + p));
+        if (value > 0.0) == rising {
+            high = x;
         } else {
-            low = middle;
+            low = x;
         }
+        let mut next = x - value / slope;
+        if !(low < next && next < high && (next - x).abs() < 0.5 * last_step) {
+            next = 0.5 * (low + high);
+        }
+        last_step = (next - x).abs();
+        if last_step <= f64::EPSILON * next.abs() || next <= low || next >= high {
+            return Some(next);
+        }
+        x = next;
     }
 }
 
@@ -46,14 +84,9 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn from_roots(roots: &[f64]) -> Vec<f64> {
-        roots.iter().fold(vec![1.0], |polynomial, root| {
-            let mut product = vec![0.0; polynomial.len() + 1];
-            for (power, c) in polynomial.iter().enumerate() {
-                product[power + 1] += c;
-                product[power] -= root * c;
-            }
-            product
+    fn from_roots(roots: &[f64; 4]) -> [f64; 5] {
+        roots.iter().fold([1.0, 0.0, 0.0, 0.0, 0.0], |polynomial, root| {
+            std::array::from_fn(|power| if power > 0 { polynomial[power - 1] } else { 0.0 } - root * polynomial[power])
         })
     }
 

@@ -1,4 +1,4 @@
-//! Contacts: impulses and what is planned afterwards.
+//! Collisions of two particles: impulses and what is planned afterwards.
 #![allow(clippy::inline_always, reason = "what no observer looks at is then not computed")]
 
 use corpuscle_core::{Contact, Meeting, Party};
@@ -30,7 +30,8 @@ impl<const D: usize> EventDriven<D> {
         // and heat the system.
         let rr = r.norm_squared();
         let closing = -(v2 - v1).dot(r) / rr;
-        let change = ((1.0 + self.rules.restitution_at(closing * distance)) * mu * closing).max(0.0);
+        let radii = [self.flights[i].radius, self.flights[j].radius];
+        let change = ((1.0 + self.rules.restitution_at(closing * distance, radii, mu)) * mu * closing).max(0.0);
         self.flights[i].velocity = v1 - r * (change / m1);
         self.flights[j].velocity = v2 + r * (change / m2);
         self.stamp(i);
@@ -48,33 +49,6 @@ impl<const D: usize> EventDriven<D> {
         contact
     }
 
-    /// A particle touches a fixed surface: `J = (1 + e) m |v.k|`.
-    pub(crate) fn bounce<const FIELD: bool>(&mut self, i: usize) -> Contact<D> {
-        self.counts.wall_collisions += 1;
-        self.count_stuck(i);
-        self.settle(i);
-        let surface = &self.surfaces[self.met[i] as usize];
-        surface.align(&mut self.flights[i]);
-        let (k, distance) = surface.normal(self.flights[i].position);
-        let with = surface.meeting;
-        let before = self.flights[i].velocity;
-        let approach = before.dot(k);
-        let mass = self.plans[i].mass;
-        let change = ((1.0 + self.rules.restitution_at(approach)) * approach).max(0.0);
-        self.flights[i].velocity = before - k * change;
-        self.stamp(i);
-        let contact = Contact {
-            time: self.epoch + self.now,
-            first: self.party(i, before),
-            with,
-            normal: k,
-            impulse: mass * change,
-            distance,
-        };
-        self.plan_and_schedule::<FIELD>(i);
-        contact
-    }
-
     #[inline]
     pub(crate) fn stamp(&mut self, i: usize) {
         self.plans[i].stamp = self.plans[i].stamp.wrapping_add(1);
@@ -88,12 +62,12 @@ impl<const D: usize> EventDriven<D> {
 
     /// Counts contacts at the same instant: in an inelastic collapse the clock stops.
     #[inline]
-    fn count_stuck(&mut self, i: usize) {
+    pub(crate) fn count_stuck(&mut self, i: usize) {
         self.plans[i].stuck = if self.flights[i].time == self.now { self.plans[i].stuck.saturating_add(1) } else { 0 };
     }
 
     #[inline(always)]
-    fn party(&self, i: usize, before: corpuscle_core::Vector<D>) -> Party<D> {
+    pub(crate) fn party(&self, i: usize, before: corpuscle_core::Vector<D>) -> Party<D> {
         let flight = &self.flights[i];
         let position = self.boundary.wrap_near(flight.position);
         let Plan { id, mass, .. } = self.plans[i];

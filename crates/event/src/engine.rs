@@ -2,16 +2,17 @@
 
 use std::ops::ControlFlow;
 
-use corpuscle_core::{Axis, Boundary, Engine, Failure, Invalid, Observer, Particles, Vector};
+use corpuscle_core::{Axis, Boundary, Contact, Engine, Failure, Invalid, Observer, Particles, Vector};
 
 use crate::calendar::Calendar;
 use crate::lanes::prefetch;
 use crate::motion::Flight;
 use crate::neighbours::{Candidates, Neighbours};
 use crate::order::place_on_curve;
+use crate::piston::MovingPiston;
 use crate::plan::Plan;
 use crate::search::{Images, Instructions, Neighbour};
-use crate::surface::{Surface, surfaces};
+use crate::surface::Surfaces;
 use crate::{Counts, Rules};
 
 /// Hard particles in a [`Boundary`], advanced from contact to contact.
@@ -54,7 +55,10 @@ pub struct EventDriven<const D: usize> {
     pub(crate) candidates: Candidates,
     pub(crate) images: Images<D>,
     pub(crate) instructions: Instructions,
-    pub(crate) surfaces: Vec<Surface<D>>,
+    pub(crate) surfaces: Surfaces<D>,
+    pub(crate) piston: Option<MovingPiston>,
+    /// How often each particle has touched a wall with a temperature; empty without such walls.
+    pub(crate) thermal_contacts: Vec<u32>,
     pub(crate) calendar: Calendar,
     /// Times in flights, plans and calendar count from here, so that they stay small and fine.
     pub(crate) epoch: f64,
@@ -65,6 +69,9 @@ pub struct EventDriven<const D: usize> {
     next_epoch: u64,
     /// The last day of the calendar that was got ready for.
     ready: u64,
+    /// When partitions and faces are going to go, the next one last; and when the last one went.
+    removals: Vec<f64>,
+    removed: f64,
 }
 
 /// The species of a particle, and how often it went around the periodic box: rarely needed.
@@ -115,13 +122,17 @@ impl<const D: usize> EventDriven<D> {
             candidates,
             images,
             instructions: Instructions::of_this_processor(),
-            surfaces: surfaces(&boundary),
+            surfaces: Surfaces::default(),
+            piston: boundary.piston.map(|piston| MovingPiston::new(piston, 0.0, flights.iter().map(|flight| flight.position))),
+            thermal_contacts: vec![],
+            removals: removals(&boundary, 0.0),
+            removed: 0.0,
             flights,
             plans: (0..n).map(|i| Plan::idle(i, particles.mass[i])).collect(),
             bodies: (0..n).map(body).collect(),
             met: vec![],
             slots: (0..n as u32).collect(),
-            calendar: Calendar::new(n),
+            calendar: Calendar::new(n + usize::from(boundary.piston.is_some())),
             boundary,
             rules,
             epoch: 0.0,
@@ -132,29 +143,41 @@ impl<const D: usize> EventDriven<D> {
             ready: 0,
         };
         engine.next_epoch = engine.contacts_per_epoch();
+        engine.count_thermal_contacts();
         engine.begin_anew();
         Ok(engine)
     }
 
-    /// Changes the box between two events: a partition goes, a wall moves away. Particles keep their velocities.
+    /// Changes the box between two events: a partition goes, a wall moves away. Particles keep their velocities; a piston
+    /// starts as the new box describes it, which may be as [`piston`](Self::piston) tells.
     ///
     /// # Errors
     /// When the particles do not fit into the new box; the old one then stays.
     pub fn set_boundary(&mut self, boundary: Boundary<D>) -> Result<(), Invalid> {
-        boundary.validate_particles(&self.snapshot())?;
+        boundary.validate_particles_at(self.time, &self.snapshot())?;
         for i in 0..self.flights.len() {
             self.settle(i);
             self.flights[i].position = boundary.wrap(self.flights[i].position);
         }
         self.images = Images::new(boundary.extent());
+        let (now, slots, flights) = (self.now, &self.slots, &self.flights);
+        let positions = slots.iter().map(|&i| flights[i as usize].position);
+        self.piston = boundary.piston.map(|piston| MovingPiston::new(piston, now, positions));
+        self.calendar = Calendar::new(self.flights.len() + usize::from(self.piston.is_some()));
+        (self.removals, self.removed) = (removals(&boundary, self.time), self.time);
         self.boundary = boundary;
-        self.surfaces = surfaces(&self.boundary);
+        self.count_thermal_contacts();
         self.begin_anew();
         Ok(())
     }
 
     /// Turns every velocity round, now. The system retraces its path until rounding has grown too large.
+    ///
+    /// The piston turns round as well; what moves as prescribed does not.
     pub fn reverse_velocities(&mut self) {
+        if let Some(piston) = &mut self.piston {
+            piston.reverse(self.now);
+        }
         self.set_velocities(|_, velocity| *velocity = -*velocity);
     }
 
@@ -179,7 +202,7 @@ impl<const D: usize> EventDriven<D> {
         let mut particles = self.snapshot();
         let target = particles.position[index] + shift;
         particles.position[index] = self.boundary.wrap(target);
-        self.boundary.validate_particles(&particles)?;
+        Boundary { piston: self.piston(), ..self.boundary.clone() }.validate_particles_at(self.time, &particles)?;
         let i = self.slots[index] as usize;
         self.settle(i);
         self.flights[i].position = target;
@@ -220,7 +243,14 @@ impl<const D: usize> EventDriven<D> {
         let (flights, now, field) = (&self.flights, self.now, self.rules.field);
         self.neighbours =
             Neighbours::new(&self.boundary, flights, |i| flights[i].position_at(now, field), &self.images, &mut self.candidates);
+        self.surfaces = Surfaces::new(&self.boundary, self.removed, &self.neighbours, &self.flights);
         self.plan_all();
+    }
+
+    /// The number by which a particle is known outside, of the one stored at this place.
+    #[inline]
+    pub(crate) fn id(&self, i: usize) -> usize {
+        self.plans[i].id as usize
     }
 
     /// Brings particles that are near each other in space near each other in memory.
@@ -250,6 +280,9 @@ impl<const D: usize> EventDriven<D> {
         for flight in &mut self.flights {
             flight.time -= shift;
         }
+        if let Some(piston) = &mut self.piston {
+            piston.shift_epoch(shift);
+        }
         self.begin_anew();
     }
 
@@ -262,19 +295,24 @@ impl<const D: usize> EventDriven<D> {
         for day in self.ready.max(today.saturating_sub(4)) + 1..=today {
             self.calendar.prefetch(day + 8);
             self.calendar.scout(day + 6, |i| {
+                if i >= self.plans.len() {
+                    return;
+                }
                 prefetch(&self.plans, i);
                 prefetch(&self.flights, i);
                 self.neighbours.prefetch_place(i);
             });
             self.calendar.scout(day + 4, |i| {
-                let partner = self.plans[i].pair.neighbour.slot();
+                // Behind the particles is the piston.
+                let Some(plan) = self.plans.get(i) else { return };
+                let partner = plan.pair.neighbour.slot();
                 prefetch(&self.plans, partner);
                 prefetch(&self.flights, partner);
                 self.neighbours.prefetch_place(partner);
                 self.neighbours.prefetch_around(i, &self.flights);
             });
             self.calendar.scout(day + 2, |i| {
-                let partner = self.plans[i].pair.neighbour.slot();
+                let partner = self.plans.get(i).map_or(usize::MAX, |plan| plan.pair.neighbour.slot());
                 if partner < self.flights.len() {
                     self.neighbours.prefetch_around(partner, &self.flights);
                 }
@@ -291,7 +329,15 @@ impl<const D: usize> EventDriven<D> {
             if large {
                 self.get_ready();
             }
-            let plan = &self.plans[i];
+            let Some(plan) = self.plans.get(i) else {
+                // Behind the particles: the piston.
+                if let Some(contact) = self.piston_event::<FIELD>()
+                    && self.report(&contact, observer)?.is_break()
+                {
+                    return Ok(ControlFlow::Break(()));
+                }
+                continue;
+            };
             let contact = if plan.pair.time == time {
                 let partner = plan.pair.neighbour;
                 if self.plans[partner.slot()].stamp != plan.pair_stamp {
@@ -300,33 +346,62 @@ impl<const D: usize> EventDriven<D> {
                 }
                 self.collide::<FIELD>(i, partner)
             } else if plan.surface_time == time {
-                self.bounce::<FIELD>(i)
+                let Some(contact) = self.touch::<FIELD>(i) else { continue };
+                contact
             } else {
                 self.leave::<FIELD>(i);
                 continue;
             };
-            if self.plans[self.slots[contact.first.index] as usize].stuck > STUCK {
-                self.time = contact.time;
-                return Err(Failure {
-                    time: contact.time,
-                    particle: Some(contact.first.index),
-                    cause: format!(
-                        "{STUCK} contacts without any time passing; set elastic_below (now {}) to a small positive speed, \
-                         and leave no particle at rest on a wall",
-                        self.rules.elastic_below
-                    ),
-                });
-            }
-            if self.counts.collisions + self.counts.wall_collisions >= self.next_epoch {
-                self.begin_epoch();
-            }
-            if observer.contact(&contact).is_break() {
-                self.time = contact.time;
+            if self.report(&contact, observer)?.is_break() {
                 return Ok(ControlFlow::Break(()));
             }
         }
         Ok(ControlFlow::Continue(()))
     }
+
+    /// A contact has happened: looks whether the clock still runs, and tells the observer.
+    #[allow(clippy::inline_always, reason = "what no observer looks at is then not computed")]
+    #[inline(always)]
+    fn report<O: Observer<D>>(&mut self, contact: &Contact<D>, observer: &mut O) -> Result<ControlFlow<()>, Failure> {
+        if self.plans[self.slots[contact.first.index] as usize].stuck > STUCK {
+            self.time = contact.time;
+            return Err(Failure {
+                time: contact.time,
+                particle: Some(contact.first.index),
+                cause: format!(
+                    "{STUCK} contacts without any time passing; set elastic_below (now {}) to a small positive speed, \
+                     and leave no particle at rest on a wall",
+                    self.rules.elastic_below
+                ),
+            });
+        }
+        if self.counts.collisions + self.counts.wall_collisions >= self.next_epoch {
+            self.begin_epoch();
+        }
+        let flow = observer.contact(contact);
+        if flow.is_break() {
+            self.time = contact.time;
+        }
+        Ok(flow)
+    }
+
+    /// Partitions and faces whose time has come are gone: nobody moves, all plan anew.
+    fn remove(&mut self, time: f64) {
+        self.removals.pop();
+        self.now = self.now.max(time - self.epoch);
+        (self.time, self.removed) = (time, time);
+        self.begin_anew();
+    }
+}
+
+/// Times after `now` at which a partition or a face goes, the earliest last.
+fn removals<const D: usize>(boundary: &Boundary<D>, now: f64) -> Vec<f64> {
+    let plates = boundary.partitions.iter().filter_map(|plate| plate.removed_at);
+    let faces = boundary.faces.iter().flatten().filter_map(|face| face.opened_at);
+    let mut times: Vec<f64> = plates.chain(faces).filter(|&time| now < time && time.is_finite()).collect();
+    times.sort_by(|a, b| b.total_cmp(a));
+    times.dedup();
+    times
 }
 
 /// Puts items into an order.
@@ -351,12 +426,22 @@ impl<const D: usize> Engine<D> for EventDriven<D> {
         if to <= self.time {
             return Ok(());
         }
-        let flow =
-            if self.rules.field == Vector::ZERO { self.run::<false, O>(to, observer) } else { self.run::<true, O>(to, observer) }?;
-        if flow.is_continue() {
-            self.now = self.now.max(to - self.epoch);
-            self.time = to;
+        loop {
+            let removal = self.removals.last().copied().filter(|&time| time <= to);
+            let stop = removal.unwrap_or(to);
+            let flow = if self.rules.field == Vector::ZERO {
+                self.run::<false, O>(stop, observer)
+            } else {
+                self.run::<true, O>(stop, observer)
+            }?;
+            if flow.is_break() {
+                return Ok(());
+            }
+            let Some(time) = removal else { break };
+            self.remove(time);
         }
+        self.now = self.now.max(to - self.epoch);
+        self.time = to;
         Ok(())
     }
 

@@ -28,11 +28,15 @@ mod lanes;
 mod motion;
 mod neighbours;
 mod order;
+mod piston;
 mod plan;
 mod predict;
+mod restitution;
 mod rules;
 mod search;
 mod surface;
+mod wall;
 
 pub use engine::EventDriven;
+pub use restitution::Restitution;
 pub use rules::{Counts, Lazy, Rules};

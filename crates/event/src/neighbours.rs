@@ -4,6 +4,7 @@ mod bins;
 mod cells;
 mod lists;
 mod reach;
+mod region;
 
 use corpuscle_core::{Boundary, Vector};
 

@@ -10,7 +10,7 @@ use corpuscle_core::Vector;
 impl<const D: usize> EventDriven<D> {
     /// Plans everything anew, for all particles.
     pub(crate) fn plan_all(&mut self) {
-        self.met.resize(if self.surfaces.is_empty() { 0 } else { self.flights.len() }, 0);
+        self.met.resize(if self.has_surfaces() { self.flights.len() } else { 0 }, 0);
         for plan in &mut self.plans {
             plan.stamp = plan.stamp.wrapping_add(1);
             plan.surface_time = f64::INFINITY;
@@ -22,28 +22,18 @@ impl<const D: usize> EventDriven<D> {
                 self.plan::<true>(i);
             }
         }
-        self.calendar.fill(self.now, self.plans.iter().map(|plan| (plan.next_time(), plan.id)));
+        self.search_for_piston();
+        let piston = self.piston_time().map(|time| (time, self.flights.len() as u32));
+        self.calendar.fill(self.now, self.plans.iter().map(|plan| (plan.next_time(), plan.id)).chain(piston));
     }
 
     /// The state of a particle has changed: plans all it is going to do.
     pub(crate) fn plan<const FIELD: bool>(&mut self, i: usize) {
         self.plan_pair::<FIELD>(i);
         self.plan_exit::<FIELD>(i);
-        if !self.surfaces.is_empty() {
+        if self.has_surfaces() {
             self.plan_surface(i);
         }
-    }
-
-    fn plan_surface(&mut self, i: usize) {
-        let flight = &self.flights[i];
-        let (mut delay, mut nearest) = (f64::INFINITY, 0);
-        for (number, surface) in self.surfaces.iter().enumerate() {
-            let candidate = surface.contact_delay(flight, self.rules.field);
-            if candidate < delay {
-                (delay, nearest) = (candidate, number);
-            }
-        }
-        (self.plans[i].surface_time, self.met[i]) = ((flight.time + delay).max(self.now), nearest as u32);
     }
 
     /// Searches all neighbours for the next collisions.
@@ -178,6 +168,7 @@ impl<const D: usize> EventDriven<D> {
             self.keep(i, found);
         }
         self.plan_exit::<FIELD>(i);
+        self.plan_obstacles(i);
     }
 
     fn leave_box<const FIELD: bool>(&mut self, i: usize) {
@@ -193,6 +184,7 @@ impl<const D: usize> EventDriven<D> {
         } else {
             self.plan_pair::<FIELD>(i);
             self.plan_exit::<FIELD>(i);
+            self.plan_obstacles(i);
         }
     }
 }

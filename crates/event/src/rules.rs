@@ -2,35 +2,41 @@
 
 use corpuscle_core::{Invalid, Vector};
 
+use crate::Restitution;
+
 /// The law of contact and the field in which particles fly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rules<const D: usize> {
-    /// Coefficient of restitution `e` in `[0, 1]`: the normal relative speed after a contact is `e` times that before.
-    /// 1 is elastic. Walls, partitions and particles alike.
-    pub restitution: f64,
+    /// How much of the normal relative speed a contact leaves: of particles, with walls without a temperature, partitions,
+    /// obstacles and the piston alike.
+    pub restitution: Restitution,
     /// Contacts that approach more slowly than this are elastic. Without such a rule inelastic spheres may collide
     /// infinitely often in a finite time (McNamara and Young, Phys. Fluids A 4, 496 (1992), doi:10.1063/1.858323).
     pub elastic_below: f64,
     /// Acceleration `g` of every particle, the same everywhere.
     pub field: Vector<D>,
+    /// Seed of the random numbers of walls with a temperature. The `n`-th such contact of a particle (from 0) draws from
+    /// `Random::at(seed, Rules::THERMAL, n, particle)`, so that it does not depend on what other particles do.
+    pub seed: u64,
 }
 
 impl<const D: usize> Default for Rules<D> {
     /// Elastic contacts, no field.
     fn default() -> Self {
-        Self { restitution: 1.0, elastic_below: 0.0, field: Vector::ZERO }
+        Self { restitution: Restitution::Constant(1.0), elastic_below: 0.0, field: Vector::ZERO, seed: 0 }
     }
 }
 
 impl<const D: usize> Rules<D> {
+    /// Stream of the random numbers of walls with a temperature.
+    pub const THERMAL: u64 = 0x7468_6572_6d61_6c00;
+
     /// Checks that every number makes sense.
     ///
     /// # Errors
     /// Names the first that does not.
     pub fn validate(&self) -> Result<(), Invalid> {
-        if !(0.0..=1.0).contains(&self.restitution) {
-            return Err(Invalid::new("restitution", self.restitution, "a number from 0 to 1"));
-        }
+        self.restitution.validate()?;
         if !(self.elastic_below >= 0.0 && self.elastic_below.is_finite()) {
             return Err(Invalid::new("elastic_below", self.elastic_below, "a speed, zero or more"));
         }
@@ -40,10 +46,10 @@ impl<const D: usize> Rules<D> {
         Ok(())
     }
 
-    /// Restitution of a contact approached at this normal speed.
+    /// Restitution of a contact approached at this normal speed, of two radii and a reduced mass.
     #[inline]
-    pub(crate) fn restitution_at(&self, speed: f64) -> f64 {
-        if speed < self.elastic_below { 1.0 } else { self.restitution }
+    pub(crate) fn restitution_at(&self, speed: f64, radii: [f64; 2], mass: f64) -> f64 {
+        if speed < self.elastic_below { 1.0 } else { self.restitution.at(speed, radii, mass) }
     }
 }
 
@@ -52,13 +58,13 @@ impl<const D: usize> Rules<D> {
 pub struct Counts {
     /// Collisions between two particles.
     pub collisions: u64,
-    /// Contacts with walls, partitions and rims.
+    /// Contacts with walls, partitions and their rims, obstacles and the piston.
     pub wall_collisions: u64,
     /// Passages from cell to cell, where neighbours are found through cells.
     pub crossings: u64,
     /// Neighbour lists made anew, where neighbours are found through lists.
     pub rebuilds: u64,
-    /// Events found obsolete when their time came, because the partner had collided meanwhile.
+    /// Events found obsolete when their time came, because the partner (a particle or the piston) had a contact meanwhile.
     pub stale: u64,
     /// Searches of a particle's whole neighbourhood for its next collision.
     pub predictions: u64,

@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 
 use common::{Record, largest_overlap, periodic_fluid, run};
 use corpuscle_core::placement::{lattice, maxwell};
-use corpuscle_core::{Axis, Boundary, Contact, Engine, Hole, Meeting, Observer, Particles, Partition, Random, Vector};
+use corpuscle_core::{Axis, Boundary, Contact, Engine, Meeting, Observer, Particles, Partition, Random, Vector};
 use corpuscle_event::{EventDriven, Rules};
 
 /// Mean and standard error of blocks long enough to be independent.
@@ -172,7 +172,7 @@ fn an_atmosphere_is_barometric() {
 /// Through a hole little wider than a particle: rims are hit, no particle cuts the plate, energy stays.
 fn passes_the_hole<const D: usize>(field: Vector<D>) {
     let mut room = Boundary::<D>::new([0.0; D], [6.0; D], Axis::Walls);
-    room.partitions.push(Partition { axis: 0, position: 3.0, hole: Some(Hole { along: 1, from: 2.0, to: 4.0 }) });
+    room.partitions.push(Partition::new(0, 3.0).with_hole(1, 2.0, 4.0));
     let mut random = Random::new(4, 0);
     let mut particles = Particles::new();
     let clear = |place: Vector<D>| (place[0] - 3.0).abs() > 0.31;

@@ -59,6 +59,13 @@ impl<const D: usize> System<D> {
                 "none: only the event-driven engine knows them; remove them or use it",
             ));
         }
+        if !self.boundary.is_plain() {
+            return Err(Invalid::new(
+                "box",
+                "a piston, obstacles, or faces that move, open or have a temperature",
+                "none of these: only the event-driven engine knows them; remove them or use it",
+            ));
+        }
         let n = self.particles.len();
         self.images.resize(n, [0; D]);
         self.acceleration.resize(n, Vector::ZERO);

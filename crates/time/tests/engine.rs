@@ -158,6 +158,6 @@ fn systems_that_make_no_sense_are_refused() {
     assert_eq!(new(room(Axis::Open), one([1.0; 2], [0.0; 2]), verlet, f64::NAN).unwrap_err().key, "dt");
     assert_eq!(new(room(Axis::Walls), one([1.0; 2], [0.0; 2]), "gauss-radau-15", 0.1).unwrap_err().key, "integrator");
     let mut divided = room(Axis::Walls);
-    divided.partitions.push(Partition { axis: 0, position: 5.0, hole: None });
+    divided.partitions.push(Partition::new(0, 5.0));
     assert_eq!(new(divided, one([1.0; 2], [0.0; 2]), verlet, 0.1).unwrap_err().key, "partitions");
 }

@@ -17,7 +17,9 @@ impl<const D: usize> Boundary<D> {
         tolerance: f64,
         mut found: impl FnMut(usize, usize, f64) -> ControlFlow<()>,
     ) {
-        let spheres: Vec<usize> = (0..particles.len()).filter(|&i| particles.radius[i] > 0.0).collect();
+        // Points overlap nothing but obstacles.
+        let points = !self.obstacles.is_empty();
+        let spheres: Vec<usize> = (0..particles.len()).filter(|&i| particles.radius[i] > 0.0 || points).collect();
         let grid = Grid::new(self, particles, &spheres);
         for cell in grid.first.windows(2) {
             let inside = &grid.entries[cell[0]..cell[1]];

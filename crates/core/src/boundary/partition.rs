@@ -25,9 +25,27 @@ pub struct Partition {
     pub position: f64,
     /// The opening, if any.
     pub hole: Option<Hole>,
+    /// Physical time from which on the plate is gone.
+    pub removed_at: Option<f64>,
 }
 
 impl Partition {
+    /// A plate without a hole that stays.
+    pub fn new(axis: usize, position: f64) -> Self {
+        Self { axis, position, hole: None, removed_at: None }
+    }
+
+    /// The same with a hole.
+    #[must_use]
+    pub fn with_hole(self, along: usize, from: f64, to: f64) -> Self {
+        Self { hole: Some(Hole { along, from, to }), ..self }
+    }
+
+    /// Whether the plate is there at this time.
+    pub fn stands_at(&self, time: f64) -> bool {
+        self.removed_at.is_none_or(|removed| time < removed)
+    }
+
     /// Whether the plate is there at the point with these coordinates (that is, the point is not within the hole).
     #[inline]
     pub fn covers<const D: usize>(&self, point: Vector<D>) -> bool {
@@ -53,6 +71,9 @@ impl Partition {
         let (lower, upper) = (boundary.lower[self.axis], boundary.upper[self.axis]);
         if !(lower < self.position && self.position < upper) {
             return Err(Invalid::new("partition position", self.position, format!("a place inside the box, {lower} to {upper}")));
+        }
+        if self.removed_at.is_some_and(f64::is_nan) {
+            return Err(Invalid::new("partition removed_at", f64::NAN, "a time"));
         }
         let Some(hole) = self.hole else { return Ok(()) };
         if hole.along >= D || hole.along == self.axis {

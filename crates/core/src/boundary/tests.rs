@@ -11,7 +11,7 @@ fn walls_take_a_radius_off_and_periodic_axes_do_not() {
 
 #[test]
 fn a_hole_is_open_and_its_rim_is_near() {
-    let plate = Partition { axis: 0, position: 5.0, hole: Some(Hole { along: 1, from: 2.0, to: 4.0 }) };
+    let plate = Partition::new(0, 5.0).with_hole(1, 2.0, 4.0);
     assert!(plate.covers(Vector([5.0, 1.0])));
     assert!(!plate.covers(Vector([5.0, 3.0])));
     assert_eq!(plate.distance(Vector([5.0, 3.0])), 1.0);

@@ -142,7 +142,11 @@ impl<const D: usize, const WORDS: usize> Bins<D, WORDS> {
         Self {
             lower: boundary.lower,
             width,
-            axes: boundary.axes,
+            // Where a face is going to open, particles may be outside from then on.
+            axes: std::array::from_fn(|k| match boundary.axes[k] {
+                Axis::Walls if boundary.faces[k].iter().any(|face| face.opened_at.is_some()) => Axis::Open,
+                axis => axis,
+            }),
             cells,
             stride,
             content: vec![[0; WORDS]; total],
@@ -176,6 +180,31 @@ impl<const D: usize, const WORDS: usize> Bins<D, WORDS> {
     #[inline]
     pub(crate) fn index(&self, cell: [u16; D]) -> usize {
         cell.iter().zip(&self.stride).map(|(&c, stride)| u32::from(c) * stride).sum::<u32>() as usize
+    }
+
+    /// Number of cells.
+    pub(crate) fn count(&self) -> usize {
+        self.content.len()
+    }
+
+    /// Numbers of all cells that meet a block.
+    pub(crate) fn cells_meeting(&self, lower: Vector<D>, upper: Vector<D>, mut visit: impl FnMut(usize)) {
+        let last = self.cells.map(|cells| f64::from(cells - 1));
+        let layers: [[f64; 2]; D] =
+            std::array::from_fn(|k| [lower[k], upper[k]].map(|x| ((x - self.lower[k]) / self.width[k]).floor()));
+        if (0..D).any(|k| self.axes[k] == Axis::Periodic && (layers[k][1] < 0.0 || layers[k][0] > last[k])) {
+            return;
+        }
+        let range: [[u32; 2]; D] = std::array::from_fn(|k| layers[k].map(|layer| layer.clamp(0.0, last[k]) as u32));
+        let total: u32 = range.iter().map(|[from, to]| to - from + 1).product();
+        for mut number in 0..total {
+            let mut cell = 0;
+            for ([from, to], stride) in range.into_iter().zip(self.stride) {
+                cell += (from + number % (to - from + 1)) * stride;
+                number /= to - from + 1;
+            }
+            visit(cell as usize);
+        }
     }
 
     /// The coordinate of the face at which a particle leaves its cell, and whether that is a periodic face of the box.

@@ -43,7 +43,7 @@ impl<const D: usize> Cells<D> {
             } else {
                 cell_width(boundary, &radii)
             };
-            let mut bins = Bins::new(boundary, width, count, 8.0 * rest.len() as f64 + 64.0);
+            let mut bins = Bins::new(boundary, width, count, 8.0 * (rest.len() + boundary.obstacles.len()) as f64 + 64.0);
             let fits = |radius: f64| 2.0 * radius * (1.0 + 0.9 * (MARGIN - 1.0)) <= width;
             let (mut largest, mut larger) = (0.0f64, vec![]);
             for &i in &rest {
@@ -72,6 +72,12 @@ impl<const D: usize> Cells<D> {
     #[inline]
     fn class(&self, i: usize) -> usize {
         self.class.get(i).map_or(0, |&class| class as usize)
+    }
+
+    /// The grid of the smallest particles.
+    #[inline]
+    pub(crate) fn finest(&self) -> &Bins<D, 4> {
+        &self.levels[0].bins
     }
 
     /// Everything the particle can touch before it or the other steps into another cell.
@@ -162,12 +168,14 @@ fn cell_width<const D: usize>(boundary: &Boundary<D>, radii: &[f64]) -> f64 {
     let longest = extent.0.into_iter().fold(0.0, f64::max);
     let mut sorted = radii.to_vec();
     sorted.sort_by(f64::total_cmp);
+    let (volume, d, obstacles) = (boundary.volume(), D as i32, boundary.obstacles.len());
+    // Obstacles are looked up by cell like particles.
+    let bodies = |particles: usize| (particles + obstacles) as f64;
     let largest = sorted.last().copied().unwrap_or(0.0);
     if largest == 0.0 {
-        // Points never meet.
-        return 2.0 * longest;
+        // Points never meet, but what is fixed.
+        return if obstacles == 0 { 2.0 * longest } else { (volume / bodies(radii.len())).powf(1.0 / f64::from(d)) };
     }
-    let (volume, d) = (boundary.volume(), D as i32);
     let mut best = (f64::INFINITY, 2.0 * largest);
     let mut previous = 0.0;
     for (m, &radius) in sorted.iter().enumerate().rev() {
@@ -177,7 +185,7 @@ fn cell_width<const D: usize>(boundary: &Boundary<D>, radii: &[f64]) -> f64 {
         }
         previous = radius;
         let small = m as f64 + 1.0;
-        let width = (2.0 * radius * MARGIN).max((OCCUPANCY * volume / small).powf(1.0 / f64::from(d)));
+        let width = (2.0 * radius * MARGIN).max((OCCUPANCY * volume / bodies(m + 1)).powf(1.0 / f64::from(d)));
         let in_cell = small * width.powi(d) / volume;
         let mut work = small * 3f64.powi(d) * (0.3 + in_cell);
         let stride = 1 + (sorted.len() - m) / 64;

@@ -1,6 +1,6 @@
 //! Candidates from neighbour lists: for dense systems of about equal spheres.
 
-use corpuscle_core::{Axis, Boundary, Vector};
+use corpuscle_core::{Boundary, Vector};
 
 use super::bins::{Bins, Candidates};
 use crate::lanes::{LANES, prefetch};
@@ -50,7 +50,7 @@ impl<const D: usize> Lists<D> {
         let extent = boundary.extent();
         // Each neighbour in one image only, and centres as single-precision numbers fine enough.
         let fits = (0..D).all(|k| extent[k] > 3.5 * reach && extent[k].max(boundary.upper[k].abs()) < 1e4 * half);
-        let closed = !boundary.axes.contains(&Axis::Open);
+        let closed = boundary.is_closed();
         (packing > dense::<D>() && smallest > 0.5 * radius && fits && closed).then_some((2.0 * radius, half))
     }
 
@@ -90,6 +90,16 @@ impl<const D: usize> Lists<D> {
         }
         let centre = self.centre(i);
         self.bins.locate(i, self.bins.cell_of(centre));
+    }
+
+    /// The bins in which the centres of the boxes are.
+    pub(crate) fn bins(&self) -> &Bins<D, 8> {
+        &self.bins
+    }
+
+    /// Half the side of the boxes.
+    pub(crate) fn half(&self) -> f64 {
+        self.half
     }
 
     /// The neighbours of a particle (words), filled up to a whole number of blocks; and whether some are periodic images.

@@ -3,11 +3,14 @@
 #![allow(dead_code, reason = "each test binary uses its own part")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot start has failed")]
 
+mod furnish;
+
 use std::ops::ControlFlow;
 
 use corpuscle_core::placement::{lattice, maxwell};
-use corpuscle_core::{Axis, Boundary, Contact, Engine, Hole, Meeting, Observer, Particles, Partition, Random, Vector};
+use corpuscle_core::{Axis, Boundary, Contact, Engine, Hole, Meeting, Observer, Obstacle, Particles, Partition, Random, Vector};
 use corpuscle_event::{EventDriven, Rules};
+use corpuscle_observe::Estimate;
 
 /// Equal spheres of diameter and mass 1 at temperature 1 in a periodic cube of the given packing fraction.
 pub(crate) fn periodic_fluid<const D: usize>(n: usize, packing: f64, seed: u64) -> EventDriven<D> {
@@ -79,7 +82,8 @@ pub(crate) fn same_bits<const D: usize>(a: &Particles<D>, b: &Particles<D>) -> b
     bits(&a.position) == bits(&b.position) && bits(&a.velocity) == bits(&b.velocity)
 }
 
-/// A random system of up to 24 spheres: any mix of faces, radii over a factor of 10, masses over a factor of 100.
+/// A random system of up to 24 spheres: any mix of faces, radii over a factor of 10, masses over a factor of 100, and in
+/// every second box whatever else particles can meet.
 pub(crate) fn random_system<const D: usize>(seed: u64) -> (Boundary<D>, Particles<D>, Rules<D>) {
     let mut random = Random::new(seed, 1);
     let mut boundary = Boundary::<D>::new([0.0; D], std::array::from_fn(|_| 3.0 + 5.0 * random.uniform()), Axis::Walls);
@@ -93,11 +97,11 @@ pub(crate) fn random_system<const D: usize>(seed: u64) -> (Boundary<D>, Particle
         let side = boundary.extent();
         let hole =
             walled.get(1).map(|&along| Hole { along, from: 0.3 * side[along], to: (0.5 + 0.2 * random.uniform()) * side[along] });
-        boundary.partitions.push(Partition { axis, position: 0.5 * side[axis], hole });
+        boundary.partitions.push(Partition { hole, ..Partition::new(axis, 0.5 * side[axis]) });
     }
     let mut rules = Rules::default();
     if random.below(3) == 0 {
-        rules.restitution = 0.5 + 0.5 * random.uniform();
+        rules.restitution = (0.5 + 0.5 * random.uniform()).into();
         rules.elastic_below = 0.05;
     }
     if random.below(3) == 0 {
@@ -106,6 +110,10 @@ pub(crate) fn random_system<const D: usize>(seed: u64) -> (Boundary<D>, Particle
             rules.field[k] = random.normal();
         }
     }
+    if random.below(2) == 0 {
+        furnish::furnish(&mut boundary, &mut rules, &mut random);
+    }
+    boundary.validate().unwrap();
     let mut particles = Particles::new();
     let wanted = 4 + random.below(21) as usize;
     let large = random.below(3) == 0;
@@ -142,7 +150,7 @@ pub(crate) fn dense_system<const D: usize>(seed: u64) -> (Boundary<D>, Particles
         }
     }
     if random.below(3) == 0 {
-        (rules.restitution, rules.elastic_below) = (0.5 + 0.5 * random.uniform(), 0.05);
+        (rules.restitution, rules.elastic_below) = ((0.5 + 0.5 * random.uniform()).into(), 0.05);
     }
     let mut particles = Particles::new();
     for number in 0..(side as usize).pow(D as u32) {
@@ -150,5 +158,43 @@ pub(crate) fn dense_system<const D: usize>(seed: u64) -> (Boundary<D>, Particles
         let velocity = Vector::from_fn(|_| random.normal());
         particles.push(place, velocity, 10f64.powf(random.uniform()), 0.45 + 0.05 * random.uniform(), 0);
     }
+    if random.below(2) == 0 {
+        // Pegs in the middle between the places.
+        for _ in 0..8 {
+            let centre = Vector::from_fn(|_| f64::from(random.below(side as u32)) * spacing);
+            boundary.obstacles.push(Obstacle { centre, radius: 0.1 + 0.1 * random.uniform() });
+        }
+    }
     (boundary, particles, rules)
+}
+
+/// So many points at a temperature, evenly over the places where `keep` allows them.
+pub(crate) fn points<const D: usize>(
+    boundary: &Boundary<D>,
+    n: usize,
+    temperature: f64,
+    random: &mut Random,
+    keep: impl Fn(Vector<D>) -> bool,
+) -> Particles<D> {
+    let mut particles = Particles::new();
+    while particles.len() < n {
+        let place = Vector::from_fn(|k| boundary.lower[k] + boundary.extent()[k] * random.uniform());
+        if keep(place) {
+            particles.push(place, Vector::ZERO, 1.0, 0.0, 0);
+        }
+    }
+    maxwell(&mut particles, temperature, false, random);
+    particles
+}
+
+/// Asserts that a score is one of a standard normal deviate, and says what it is.
+pub(crate) fn assert_score(what: &str, score: f64) {
+    println!("{what}: z = {score:.2}");
+    assert!(score.abs() < 3.0, "{what}: z = {score}");
+}
+
+/// Asserts that an estimate agrees with theory.
+pub(crate) fn assert_estimate(what: &str, estimate: Estimate, expected: f64) {
+    let Estimate { mean, standard_error, .. } = estimate;
+    assert_score(&format!("{what}: {mean:.6} +- {standard_error:.6}, expected {expected:.6}"), estimate.score(expected));
 }

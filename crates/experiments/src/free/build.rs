@@ -130,7 +130,7 @@ fn boundary<const D: usize>(system: &System) -> Result<Boundary<D>, Invalid> {
             None => None,
             Some(hole) => Some(Hole { along: axis::<D>(&key("hole.along"), hole.along)?, from: hole.from, to: hole.to }),
         };
-        boundary.partitions.push(Partition { axis: axis::<D>(&key("axis"), plate.axis)?, position: plate.position, hole });
+        boundary.partitions.push(Partition { hole, ..Partition::new(axis::<D>(&key("axis"), plate.axis)?, plate.position) });
         boundary.validate().map_err(|error| {
             let field = error.key.strip_prefix("partition ").unwrap_or(&error.key).replace("hole ", "hole.");
             Invalid { key: key(&field), ..error }
@@ -272,7 +272,7 @@ fn event_driven<const D: usize>(system: &System, boundary: Boundary<D>, particle
     }
     let mut rules = Rules { field: field(system)?, ..Rules::default() };
     if let Some(collisions) = &system.collisions {
-        (rules.restitution, rules.elastic_below) = (collisions.restitution, collisions.elastic_below);
+        (rules.restitution, rules.elastic_below) = (collisions.restitution.into(), collisions.elastic_below);
     }
     rules.validate().map_err(|error| Invalid { key: format!("collisions.{}", error.key), ..error })?;
     Ok(AnyEngine::Event(Box::new(EventDriven::new(boundary, particles, rules)?)))

@@ -49,7 +49,7 @@ impl<const D: usize> Room<D> {
     pub(super) fn new(set: &Set<D>, process: Process, stream: u64) -> Result<Self, Invalid> {
         let mut random = Random::new(set.seed, stream);
         let middle = 0.5 * set.boundary.upper[0];
-        let plate = |hole| Partition { axis: 0, position: middle, hole };
+        let plate = |hole| Partition { hole, ..Partition::new(0, middle) };
         let mut particles = Particles::new();
         for (index, count) in set.species(process).into_iter().enumerate() {
             let mut half = set.boundary.clone();

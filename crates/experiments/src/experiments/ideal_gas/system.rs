@@ -110,7 +110,7 @@ impl<const D: usize> Observer<D> for Totals<D> {
                 self.virial += contact.impulse * contact.distance;
                 self.collisions += 1;
             }
-            Meeting::Partition { .. } => {}
+            Meeting::Partition { .. } | Meeting::Obstacle { .. } | Meeting::Piston { .. } => {}
         }
         ControlFlow::Continue(())
     }
