@@ -1,5 +1,6 @@
 //! The subcommands, one a file, and the arguments that several share.
 
+pub(crate) mod bench;
 pub(crate) mod check;
 pub(crate) mod list;
 pub(crate) mod record;

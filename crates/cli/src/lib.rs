@@ -19,7 +19,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use corpuscle_io::Registry;
 
-use command::{check, list, record, run, view};
+use command::{bench, check, list, record, run, view};
 use trouble::Trouble;
 
 /// A physics laboratory: exact hard-particle dynamics, soft particles, gravity and waves, measured beside theory.
@@ -40,6 +40,8 @@ enum Task {
     View(view::Arguments),
     /// Record a clip: .mp4, .gif, or a folder of pictures. Needs no display.
     Record(record::Arguments),
+    /// Time an engine, and show its physics beside its speed.
+    Bench(bench::Arguments),
     /// Validate a scenario file and say what it would run, without running it.
     Check(check::Arguments),
 }
@@ -81,6 +83,7 @@ impl Command {
             Some(Task::Run(arguments)) => run::run(arguments, registry),
             Some(Task::View(arguments)) => view::view(arguments, registry),
             Some(Task::Record(arguments)) => record::record(arguments, registry),
+            Some(Task::Bench(arguments)) => bench::bench(arguments),
             Some(Task::Check(arguments)) => check::check(arguments, registry),
         }
     }

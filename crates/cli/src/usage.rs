@@ -4,7 +4,7 @@ use std::error::Error as _;
 use std::fmt::Write;
 
 use clap::Error;
-use clap::error::{ContextKind, ContextValue};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use corpuscle_core::Invalid;
 use corpuscle_io::{Origin, Refusal, Registry};
 
@@ -36,6 +36,9 @@ pub(crate) fn refusal(error: &Error) -> Trouble {
     let context = |kind| error.get(kind).map(words).filter(|words| !words.is_empty());
     if let (Some(argument), Some(value)) = (context(ContextKind::InvalidArg), context(ContextKind::InvalidValue)) {
         return Refusal::new(Origin::CommandLine, Invalid::new(key(&argument), value, expected(error))).into();
+    }
+    if let (ErrorKind::MissingSubcommand, Some(known)) = (error.kind(), context(ContextKind::ValidSubcommand)) {
+        return Trouble::Usage(format!("a name is missing: expected one of {known}; --help shows what there is"));
     }
     let near = context(ContextKind::SuggestedArg).or_else(|| context(ContextKind::SuggestedSubcommand));
     let advice = near.map_or_else(|| "--help shows what there is".into(), |near| format!("did you mean `{near}`?"));

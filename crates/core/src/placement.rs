@@ -1,5 +1,9 @@
 //! How systems start: places without overlap, velocities at a temperature.
 
+mod close_packed;
+
+pub use close_packed::close_packed;
+
 use crate::{Axis, Boundary, Invalid, Particles, Random, Vector};
 
 /// Sites searched, beyond a few a particle, before a region counts as full: point particles would allow any number.
