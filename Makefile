@@ -2,7 +2,7 @@
 #   make run    install what is missing, build, run the five experiments
 #   make test   the same, then every test
 .DEFAULT_GOAL := help
-.PHONY: help run test lint bench setup setup-test clean
+.PHONY: help run test soak lint bench setup setup-test clean
 
 CARGO ?= cargo
 OUT   ?= results
@@ -17,6 +17,9 @@ run: setup ## Build, run the five experiments, leave a report of each under resu
 test: setup-test ## Every test: units, physics against theory, pictures, the command
 	$(CARGO) test --release --locked --workspace
 	@scripts/check-rooms.sh
+
+soak: ## An hour or so: 10^9 collisions, 10^8 contacts of grains; nothing may drift, sink or stall
+	$(CARGO) test --release --locked -p corpuscle-event --test soak -- --ignored --nocapture --test-threads=1
 
 lint: ## Format and house rules
 	$(CARGO) fmt --all --check
