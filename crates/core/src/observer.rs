@@ -61,10 +61,10 @@ pub struct Contact<const D: usize> {
     pub with: Meeting<D>,
     /// Unit normal, from the first particle towards what it met.
     pub normal: Vector<D>,
-    /// Magnitude `J >= 0` of the impulse: the first particle received `-J` along the normal. (At a wall with a temperature
-    /// it gets a new tangential velocity, too.)
+    /// Impulse `J`: the first particle received `-J` along the normal. Where surfaces touch it pushes, `J >= 0`; at the edge
+    /// of a square well it may pull, `J < 0`. (At a wall with a temperature it gets a new tangential velocity, too.)
     pub impulse: f64,
-    /// Distance between the centres at the contact; for a wall, from the centre to the wall.
+    /// Distance between the centres at the contact, or at the edge of a well; for a wall, from the centre to the wall.
     pub distance: f64,
 }
 

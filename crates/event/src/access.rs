@@ -50,6 +50,7 @@ impl<const D: usize> EventDriven<D> {
             + self.bodies.capacity() * size_of::<Body<D>>()
             + (self.met.capacity() + self.slots.capacity()) * size_of::<u32>()
             + self.calendar.memory()
+            + self.pairs.bonds.memory()
             + self.neighbours.memory()
     }
 
@@ -85,12 +86,13 @@ impl<const D: usize> EventDriven<D> {
         (0..self.flights.len()).map(energy).sum()
     }
 
-    /// Potential energy `-sum m g.r` in the uniform field, now; zero where the coordinates are zero.
+    /// Potential energy now: `-sum m g.r` in the uniform field, zero where the coordinates are zero, and `-depth` for each
+    /// pair in its well.
     ///
     /// Along a periodic axis a particle that falls around the box has fallen all the way.
     pub fn potential_energy(&self) -> f64 {
         let energy = |i: usize| -self.mass(i) * self.rules.field.dot(self.unwrapped(i));
-        (0..self.flights.len()).map(energy).sum()
+        (0..self.flights.len()).map(energy).sum::<f64>() + self.pairs.energy()
     }
 
     /// Total momentum `sum m v` now.

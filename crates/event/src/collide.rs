@@ -1,9 +1,10 @@
 //! Collisions of two particles: impulses and what is planned afterwards.
 #![allow(clippy::inline_always, reason = "what no observer looks at is then not computed")]
 
-use corpuscle_core::{Contact, Meeting, Party};
+use corpuscle_core::{Contact, Meeting, Party, Vector};
 
 use crate::engine::EventDriven;
+use crate::law::{Law, Pairs};
 use crate::plan::Plan;
 use crate::search::Neighbour;
 
@@ -13,10 +14,9 @@ impl<const D: usize> EventDriven<D> {
     ///
     /// The partner of lower index is the first, so the result does not depend on whose event it was.
     #[inline(always)]
-    pub(crate) fn collide<const FIELD: bool>(&mut self, i: usize, partner: Neighbour) -> Contact<D> {
+    pub(crate) fn collide<L: Law>(&mut self, i: usize, partner: Neighbour) -> Contact<D> {
         let (j, shift) = (partner.slot(), self.images.shift(partner));
         let (i, j, shift) = if self.plans[i].id < self.plans[j].id { (i, j, shift) } else { (j, i, -shift) };
-        self.counts.collisions += 1;
         self.count_stuck(i);
         self.count_stuck(j);
         self.settle(i);
@@ -30,8 +30,13 @@ impl<const D: usize> EventDriven<D> {
         // and heat the system.
         let rr = r.norm_squared();
         let closing = -(v2 - v1).dot(r) / rr;
-        let radii = [self.flights[i].radius, self.flights[j].radius];
-        let change = ((1.0 + self.rules.restitution_at(closing * distance, radii, mu)) * mu * closing).max(0.0);
+        let change = if L::PAIRS == Pairs::Hard {
+            self.counts.collisions += 1;
+            let radii = [self.flights[i].radius, self.flights[j].radius];
+            ((1.0 + self.rules.restitution_at(closing * distance, radii, mu)) * mu * closing).max(0.0)
+        } else {
+            self.pass::<L>(i, j, r, closing, mu)
+        };
         self.flights[i].velocity = v1 - r * (change / m1);
         self.flights[j].velocity = v2 + r * (change / m2);
         self.stamp(i);
@@ -44,9 +49,23 @@ impl<const D: usize> EventDriven<D> {
             impulse: change * distance,
             distance,
         };
-        self.plan_and_schedule::<FIELD>(i);
-        self.plan_and_schedule::<FIELD>(j);
+        self.plan_and_schedule::<L>(i);
+        self.plan_and_schedule::<L>(j);
         contact
+    }
+
+    /// The same for pairs that are more than hard: what `r` is to be multiplied by for the impulse, which attracts when negative.
+    fn pass<L: Law>(&mut self, i: usize, j: usize, r: Vector<D>, closing: f64, mu: f64) -> f64 {
+        let radii = [self.flights[i].radius, self.flights[j].radius];
+        let outcome = self.pairs.execute((self.plans[i].id, self.plans[j].id), r, closing, radii[0] + radii[1], mu);
+        if outcome.core {
+            self.counts.collisions += 1;
+            let e = if L::PAIRS == Pairs::Growing { 1.0 } else { self.rules.restitution_at(closing * r.norm(), radii, mu) };
+            0.5 * (1.0 + e) * mu * outcome.change
+        } else {
+            self.counts.edges += 1;
+            mu * outcome.change
+        }
     }
 
     #[inline]
@@ -55,8 +74,8 @@ impl<const D: usize> EventDriven<D> {
     }
 
     #[inline]
-    pub(crate) fn plan_and_schedule<const FIELD: bool>(&mut self, i: usize) {
-        self.plan::<FIELD>(i);
+    pub(crate) fn plan_and_schedule<L: Law>(&mut self, i: usize) {
+        self.plan::<L>(i);
         self.calendar.schedule(i as u32, self.plans[i].next_time());
     }
 

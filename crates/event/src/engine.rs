@@ -1,14 +1,17 @@
 //! The engine: one loop that takes the earliest event and executes it.
 
+use std::borrow::Cow;
 use std::ops::ControlFlow;
 
 use corpuscle_core::{Axis, Boundary, Contact, Engine, Failure, Invalid, Observer, Particles, Vector};
 
 use crate::calendar::Calendar;
 use crate::lanes::prefetch;
+use crate::law::{Law, under_its_law};
 use crate::motion::Flight;
 use crate::neighbours::{Candidates, Neighbours};
 use crate::order::place_on_curve;
+use crate::pair::{Growth, State};
 use crate::piston::MovingPiston;
 use crate::plan::Plan;
 use crate::search::{Images, Instructions, Neighbour};
@@ -56,6 +59,9 @@ pub struct EventDriven<const D: usize> {
     pub(crate) images: Images<D>,
     pub(crate) instructions: Instructions,
     pub(crate) surfaces: Surfaces<D>,
+    pub(crate) pairs: State,
+    /// Which pairs are in their wells is not known yet.
+    pub(crate) bonds_unknown: bool,
     pub(crate) piston: Option<MovingPiston>,
     /// How often each particle has touched a wall with a temperature; empty without such walls.
     pub(crate) thermal_contacts: Vec<u32>,
@@ -92,10 +98,41 @@ impl<const D: usize> EventDriven<D> {
     ///
     /// # Errors
     /// When box, particles or rules make no sense, particles overlap, or one has no mass: names what is wrong.
-    #[allow(clippy::needless_pass_by_value, reason = "the engine takes the particles over")]
     pub fn new(boundary: Boundary<D>, particles: Particles<D>, rules: Rules<D>) -> Result<Self, Invalid> {
         boundary.validate_particles(&particles)?;
+        Self::start(boundary, particles, rules, None)
+    }
+
+    /// An engine at time 0 whose spheres grow: at the time `t` their radii are `scale + rate t` of those of `particles`.
+    ///
+    /// Contacts of two are elastic, in the frame of their growing surfaces, and so heat them (Lubachevsky and Stillinger
+    /// 1990, doi:10.1007/BF01025983). From walls they keep as far as their whole radii ask for. Meant for `scale + rate t`
+    /// up to 1: see [`grown`](crate::grown).
+    ///
+    /// # Errors
+    /// As [`new`](Self::new); the whole spheres have to fit between the walls, those that are small yet next to each other.
+    pub fn growing(boundary: Boundary<D>, particles: Particles<D>, scale: f64, rate: f64) -> Result<Self, Invalid> {
+        if !(0.0..=1.0).contains(&scale) {
+            return Err(Invalid::new("scale", scale, "a number from 0 to 1"));
+        }
+        if !(rate > 0.0 && rate.is_finite()) {
+            return Err(Invalid::new("rate", rate, "a number above 0"));
+        }
+        let mut small = particles.clone();
+        small.radius.iter_mut().for_each(|radius| *radius *= scale);
+        boundary.validate_particles(&small)?;
+        for i in 0..particles.len() {
+            let mut alone = Particles::new();
+            alone.push(particles.position[i], Vector::ZERO, 1.0, particles.radius[i], 0);
+            boundary.validate_particles(&alone)?;
+        }
+        Self::start(boundary, particles, Rules::default(), Some(Growth { scale, rate }))
+    }
+
+    #[allow(clippy::needless_pass_by_value, reason = "the engine takes the particles over")]
+    fn start(boundary: Boundary<D>, particles: Particles<D>, rules: Rules<D>, growth: Option<Growth>) -> Result<Self, Invalid> {
         rules.validate()?;
+        rules.pair.validate_box(&boundary, &particles)?;
         if let Some(i) = particles.mass.iter().position(|&mass| mass <= 0.0) {
             return Err(Invalid::new(
                 format!("mass of particle {i}"),
@@ -118,11 +155,13 @@ impl<const D: usize> EventDriven<D> {
         let images = Images::new(boundary.extent());
         let mut candidates = Candidates::default();
         let mut engine = Self {
-            neighbours: Neighbours::new(&boundary, &[], |_| Vector::ZERO, &images, &mut candidates),
+            neighbours: Neighbours::new(&boundary, &[], 1.0, |_| Vector::ZERO, &images, &mut candidates),
             candidates,
             images,
             instructions: Instructions::of_this_processor(),
             surfaces: Surfaces::default(),
+            pairs: State::new(rules.pair, growth, n),
+            bonds_unknown: true,
             piston: boundary.piston.map(|piston| MovingPiston::new(piston, 0.0, flights.iter().map(|flight| flight.position))),
             thermal_contacts: vec![],
             removals: removals(&boundary, 0.0),
@@ -155,6 +194,8 @@ impl<const D: usize> EventDriven<D> {
     /// When the particles do not fit into the new box; the old one then stays.
     pub fn set_boundary(&mut self, boundary: Boundary<D>) -> Result<(), Invalid> {
         boundary.validate_particles_at(self.time, &self.snapshot())?;
+        self.rules.pair.validate_box(&boundary, &self.snapshot())?;
+        self.bonds_unknown = true;
         for i in 0..self.flights.len() {
             self.settle(i);
             self.flights[i].position = boundary.wrap(self.flights[i].position);
@@ -206,6 +247,7 @@ impl<const D: usize> EventDriven<D> {
         let i = self.slots[index] as usize;
         self.settle(i);
         self.flights[i].position = target;
+        self.bonds_unknown = true;
         self.begin_anew();
         Ok(())
     }
@@ -241,9 +283,17 @@ impl<const D: usize> EventDriven<D> {
         }
         self.sort();
         let (flights, now, field) = (&self.flights, self.now, self.rules.field);
-        self.neighbours =
-            Neighbours::new(&self.boundary, flights, |i| flights[i].position_at(now, field), &self.images, &mut self.candidates);
+        // To a search for neighbours particles are as large as their pair law reaches.
+        let range = self.pairs.range();
+        let wide = |flight: &Flight<D>| Flight { radius: range * flight.radius, ..*flight };
+        let flights: Cow<[_]> = if range == 1.0 { flights.into() } else { flights.iter().map(wide).collect() };
+        let position = |i: usize| flights[i].position_at(now, field);
+        let core = self.pairs.core();
+        self.neighbours = Neighbours::new(&self.boundary, &flights, core, position, &self.images, &mut self.candidates);
         self.surfaces = Surfaces::new(&self.boundary, self.removed, &self.neighbours, &self.flights);
+        if self.bonds_unknown {
+            self.find_bonds();
+        }
         self.plan_all();
     }
 
@@ -283,6 +333,7 @@ impl<const D: usize> EventDriven<D> {
         if let Some(piston) = &mut self.piston {
             piston.shift_epoch(shift);
         }
+        self.pairs.shift_epoch(shift);
         self.begin_anew();
     }
 
@@ -321,7 +372,7 @@ impl<const D: usize> EventDriven<D> {
         self.ready = today;
     }
 
-    fn run<const FIELD: bool, O: Observer<D>>(&mut self, to: f64, observer: &mut O) -> Result<ControlFlow<()>, Failure> {
+    fn run<L: Law>(&mut self, to: f64, observer: &mut impl Observer<D>) -> Result<ControlFlow<()>, Failure> {
         let large = self.flights.len() > LARGE;
         while let Some((time, i)) = self.calendar.take(to - self.epoch) {
             self.now = time;
@@ -331,7 +382,7 @@ impl<const D: usize> EventDriven<D> {
             }
             let Some(plan) = self.plans.get(i) else {
                 // Behind the particles: the piston.
-                if let Some(contact) = self.piston_event::<FIELD>()
+                if let Some(contact) = self.piston_event::<L>()
                     && self.report(&contact, observer)?.is_break()
                 {
                     return Ok(ControlFlow::Break(()));
@@ -341,15 +392,15 @@ impl<const D: usize> EventDriven<D> {
             let contact = if plan.pair.time == time {
                 let partner = plan.pair.neighbour;
                 if self.plans[partner.slot()].stamp != plan.pair_stamp {
-                    self.replace_stale::<FIELD>(i);
+                    self.replace_stale::<L>(i);
                     continue;
                 }
-                self.collide::<FIELD>(i, partner)
+                self.collide::<L>(i, partner)
             } else if plan.surface_time == time {
-                let Some(contact) = self.touch::<FIELD>(i) else { continue };
+                let Some(contact) = self.touch::<L>(i) else { continue };
                 contact
             } else {
-                self.leave::<FIELD>(i);
+                self.leave::<L>(i);
                 continue;
             };
             if self.report(&contact, observer)?.is_break() {
@@ -375,7 +426,7 @@ impl<const D: usize> EventDriven<D> {
                 ),
             });
         }
-        if self.counts.collisions + self.counts.wall_collisions >= self.next_epoch {
+        if self.counts.collisions + self.counts.edges + self.counts.wall_collisions >= self.next_epoch {
             self.begin_epoch();
         }
         let flow = observer.contact(contact);
@@ -429,11 +480,7 @@ impl<const D: usize> Engine<D> for EventDriven<D> {
         loop {
             let removal = self.removals.last().copied().filter(|&time| time <= to);
             let stop = removal.unwrap_or(to);
-            let flow = if self.rules.field == Vector::ZERO {
-                self.run::<false, O>(stop, observer)
-            } else {
-                self.run::<true, O>(stop, observer)
-            }?;
+            let flow = under_its_law!(self.run(stop, observer))?;
             if flow.is_break() {
                 return Ok(());
             }

@@ -23,16 +23,18 @@ pub(crate) enum Neighbours<const D: usize> {
 }
 
 impl<const D: usize> Neighbours<D> {
-    /// `position`: where each particle is now.
+    /// `position`: where each particle is now. Pairs meet at the sum of the radii or farther in, but no centre comes nearer
+    /// to another than `core` of its radius.
     pub(crate) fn new(
         boundary: &Boundary<D>,
         flights: &[Flight<D>],
+        core: f64,
         position: impl Fn(usize) -> Vector<D>,
         images: &Images<D>,
         found: &mut Candidates,
     ) -> Self {
         Lists::new(boundary, flights, &position, images, found)
-            .map_or_else(|| Self::Cells(Cells::new(boundary, flights, &position)), Self::Lists)
+            .map_or_else(|| Self::Cells(Cells::new(boundary, flights, core, &position)), Self::Lists)
     }
 
     /// Asks for the place of a particle.

@@ -9,6 +9,7 @@ use std::cmp::Ordering;
 use corpuscle_core::{Contact, Meeting, Piston, Vector};
 
 use crate::engine::EventDriven;
+use crate::law::Law;
 use crate::motion::{Flight, upward_passage};
 use crate::surface::touching;
 
@@ -185,7 +186,7 @@ impl<const D: usize> EventDriven<D> {
 
     /// Executes the piston's own next event: a contact with a particle, or none that concerns one.
     #[cold]
-    pub(crate) fn piston_event<const FIELD: bool>(&mut self) -> Option<Contact<D>> {
+    pub(crate) fn piston_event<L: Law>(&mut self) -> Option<Contact<D>> {
         let now = self.now;
         let piston = self.piston.as_mut()?;
         if piston.stop_time <= now {
@@ -198,7 +199,7 @@ impl<const D: usize> EventDriven<D> {
         if let Some(Candidate { particle, stamp, .. }) = next
             && self.plans[particle as usize].stamp == stamp
         {
-            return self.push_piston::<FIELD>(particle as usize);
+            return self.push_piston::<L>(particle as usize);
         }
         // Obsolete, and perhaps the ones behind it as well.
         self.counts.stale += 1;
@@ -214,7 +215,7 @@ impl<const D: usize> EventDriven<D> {
 
     /// A particle and the piston touch: `J = (1 + e) mu w` with the reduced mass `mu = m M / (m + M)` and the normal speed
     /// `w` of approach.
-    pub(crate) fn push_piston<const FIELD: bool>(&mut self, i: usize) -> Option<Contact<D>> {
+    pub(crate) fn push_piston<L: Law>(&mut self, i: usize) -> Option<Contact<D>> {
         self.counts.wall_collisions += 1;
         self.count_stuck(i);
         self.settle(i);
@@ -243,7 +244,7 @@ impl<const D: usize> EventDriven<D> {
             impulse,
             distance,
         };
-        self.plan_and_schedule::<FIELD>(i);
+        self.plan_and_schedule::<L>(i);
         self.search_for_piston();
         self.schedule_piston();
         Some(contact)

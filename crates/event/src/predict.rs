@@ -1,8 +1,10 @@
 //! Planning: what a particle is going to meet, and when.
 
 use crate::engine::EventDriven;
+use crate::law::{Law, Pairs, under_its_law};
 use crate::motion::{Flight, upward_passage};
 use crate::neighbours::Neighbours;
+use crate::pair::State;
 use crate::plan::{Exit, Plan};
 use crate::search::{Meet, Neighbour, View, home};
 use corpuscle_core::Vector;
@@ -16,11 +18,7 @@ impl<const D: usize> EventDriven<D> {
             plan.surface_time = f64::INFINITY;
         }
         for i in 0..self.flights.len() {
-            if self.rules.field == Vector::ZERO {
-                self.plan::<false>(i);
-            } else {
-                self.plan::<true>(i);
-            }
+            under_its_law!(self.plan(i));
         }
         self.search_for_piston();
         let piston = self.piston_time().map(|time| (time, self.flights.len() as u32));
@@ -28,17 +26,40 @@ impl<const D: usize> EventDriven<D> {
     }
 
     /// The state of a particle has changed: plans all it is going to do.
-    pub(crate) fn plan<const FIELD: bool>(&mut self, i: usize) {
-        self.plan_pair::<FIELD>(i);
-        self.plan_exit::<FIELD>(i);
+    pub(crate) fn plan<L: Law>(&mut self, i: usize) {
+        self.plan_pair::<L>(i);
+        self.plan_exit::<L>(i);
         if self.has_surfaces() {
             self.plan_surface(i);
         }
     }
 
+    /// Sees who begins in whose well.
+    pub(crate) fn find_bonds(&mut self) {
+        self.bonds_unknown = false;
+        self.pairs.forget();
+        if self.pairs.law() != Pairs::InWells {
+            return;
+        }
+        for i in 0..self.flights.len() {
+            let words = match &self.neighbours {
+                Neighbours::Lists(lists) => lists.neighbours(i).0,
+                Neighbours::Cells(cells) => {
+                    cells.collect(i, &mut self.candidates);
+                    self.candidates.found()
+                }
+            };
+            let place = |i: usize| self.flights[i].position_at(self.now, self.rules.field);
+            for other in words.iter().copied().map(Neighbour::from_word).filter(|other| other.slot() != i) {
+                let (j, s) = (other.slot(), self.flights[i].radius + self.flights[other.slot()].radius);
+                self.pairs.see((self.plans[i].id, self.plans[j].id), place(j) + self.images.shift(other) - place(i), s);
+            }
+        }
+    }
+
     /// Searches all neighbours for the next collisions.
     #[inline]
-    pub(crate) fn plan_pair<const FIELD: bool>(&mut self, i: usize) {
+    pub(crate) fn plan_pair<L: Law>(&mut self, i: usize) {
         self.counts.predictions += 1;
         let (words, images) = match &self.neighbours {
             Neighbours::Lists(lists) => lists.neighbours(i),
@@ -49,7 +70,7 @@ impl<const D: usize> EventDriven<D> {
             }
         };
         let view = View { flights: &self.flights, images: &self.images, field: self.rules.field };
-        let found = search::<D, FIELD>(&view, self.instructions, &self.plans, i, self.now, words, images);
+        let found = search::<D, L>(&view, self.instructions, (&self.plans, &self.pairs), i, self.now, words, images);
         self.keep(i, found);
     }
 
@@ -64,9 +85,9 @@ impl<const D: usize> EventDriven<D> {
 
     /// The partner of the event that came up has collided with another meanwhile.
     #[inline]
-    pub(crate) fn replace_stale<const FIELD: bool>(&mut self, i: usize) {
+    pub(crate) fn replace_stale<L: Law>(&mut self, i: usize) {
         self.counts.stale += 1;
-        self.plan_pair::<FIELD>(i);
+        self.plan_pair::<L>(i);
         self.calendar.schedule(i as u32, self.plans[i].next_time());
     }
 
@@ -75,14 +96,14 @@ impl<const D: usize> EventDriven<D> {
     /// An upper face is left only while moving up and a lower one while moving down, so a particle that rounding has put
     /// on the wrong side of a face does not go back and forth.
     #[inline]
-    pub(crate) fn plan_exit<const FIELD: bool>(&mut self, i: usize) {
+    pub(crate) fn plan_exit<L: Law>(&mut self, i: usize) {
         let flight = &self.flights[i];
         let mut best = (f64::INFINITY, Exit::new(0, 0, false, false));
         match &self.neighbours {
-            Neighbours::Lists(lists) => best = self.exit::<FIELD>(flight, 0, |axis, up| (lists.face(i, axis, up), false)),
+            Neighbours::Lists(lists) => best = self.exit::<L>(flight, 0, |axis, up| (lists.face(i, axis, up), false)),
             Neighbours::Cells(cells) => {
                 for level in 0..cells.levels(i) {
-                    let exit = self.exit::<FIELD>(flight, level, |axis, up| cells.face(i, level, axis, up));
+                    let exit = self.exit::<L>(flight, level, |axis, up| cells.face(i, level, axis, up));
                     best = if exit.0 < best.0 { exit } else { best };
                 }
             }
@@ -94,12 +115,12 @@ impl<const D: usize> EventDriven<D> {
     /// The first of the faces that a particle passes, two to an axis: `face(axis, up)` tells where it is and whether it is
     /// a periodic face of the box.
     #[inline]
-    fn exit<const FIELD: bool>(&self, flight: &Flight<D>, level: usize, face: impl Fn(usize, bool) -> (f64, bool)) -> (f64, Exit) {
+    fn exit<L: Law>(&self, flight: &Flight<D>, level: usize, face: impl Fn(usize, bool) -> (f64, bool)) -> (f64, Exit) {
         let (field, now) = (self.rules.field, self.now);
         // Directions are random: the first is found by arithmetic on bits, not by branches.
         let (mut first, mut first_axis, mut ups, mut arounds) = (f64::INFINITY, 0, 0, 0);
         for axis in 0..D {
-            let (time, up, around) = if FIELD && field[axis] != 0.0 {
+            let (time, up, around) = if L::FIELD && field[axis] != 0.0 {
                 [false, true]
                     .map(|up| {
                         let (face, around) = face(axis, up);
@@ -136,15 +157,15 @@ impl<const D: usize> EventDriven<D> {
 
     /// The particle leaves its cell or its box.
     #[inline]
-    pub(crate) fn leave<const FIELD: bool>(&mut self, i: usize) {
+    pub(crate) fn leave<L: Law>(&mut self, i: usize) {
         match &mut self.neighbours {
-            Neighbours::Cells(_) => self.leave_cell::<FIELD>(i),
-            Neighbours::Lists(_) => self.leave_box::<FIELD>(i),
+            Neighbours::Cells(_) => self.leave_cell::<L>(i),
+            Neighbours::Lists(_) => self.leave_box::<L>(i),
         }
         self.calendar.schedule(i as u32, self.plans[i].next_time());
     }
 
-    fn leave_cell<const FIELD: bool>(&mut self, i: usize) {
+    fn leave_cell<L: Law>(&mut self, i: usize) {
         let Neighbours::Cells(cells) = &mut self.neighbours else { return };
         self.counts.crossings += 1;
         let exit = self.plans[i].exit;
@@ -157,21 +178,21 @@ impl<const D: usize> EventDriven<D> {
             self.flights[i].position[axis] = if exit.up() { lower } else { upper };
             self.bodies[i].images[axis] += if exit.up() { 1 } else { -1 };
             self.stamp(i);
-            return self.plan::<FIELD>(i);
+            return self.plan::<L>(i);
         }
         cells.collect_new(i, exit, &mut self.candidates);
         let images = self.candidates.images;
         let words = self.candidates.padded(Neighbour::new(i as u32, home::<D>()));
         let view = View { flights: &self.flights, images: &self.images, field: self.rules.field };
-        let found = search::<D, FIELD>(&view, self.instructions, &self.plans, i, self.now, words, images);
+        let found = search::<D, L>(&view, self.instructions, (&self.plans, &self.pairs), i, self.now, words, images);
         if earlier(found, self.plans[i].pair, &self.plans) {
             self.keep(i, found);
         }
-        self.plan_exit::<FIELD>(i);
+        self.plan_exit::<L>(i);
         self.plan_obstacles(i);
     }
 
-    fn leave_box<const FIELD: bool>(&mut self, i: usize) {
+    fn leave_box<L: Law>(&mut self, i: usize) {
         let wrapped = self.wrap(i);
         let place = self.flights[i].position_at(self.now, self.rules.field);
         let Neighbours::Lists(lists) = &mut self.neighbours else { return };
@@ -180,10 +201,10 @@ impl<const D: usize> EventDriven<D> {
         if wrapped {
             // A change of state, if only by rounding.
             self.stamp(i);
-            self.plan::<FIELD>(i);
+            self.plan::<L>(i);
         } else {
-            self.plan_pair::<FIELD>(i);
-            self.plan_exit::<FIELD>(i);
+            self.plan_pair::<L>(i);
+            self.plan_exit::<L>(i);
             self.plan_obstacles(i);
         }
     }
@@ -196,32 +217,36 @@ fn earlier(a: Meet, b: Meet, plans: &[Plan]) -> bool {
     a.time < b.time || (a.time == b.time && a.time < f64::INFINITY && rank(a.neighbour) < rank(b.neighbour))
 }
 
-/// The earliest collision among candidates (words, a whole number of blocks).
+/// The earliest event among candidates (words, a whole number of blocks).
 #[inline]
-fn search<const D: usize, const FIELD: bool>(
+fn search<const D: usize, L: Law>(
     view: &View<'_, D>,
     instructions: crate::search::Instructions,
-    plans: &[Plan],
+    (plans, pairs): (&[Plan], &State),
     i: usize,
     now: f64,
     words: &[u32],
     images: bool,
 ) -> Meet {
     let me = &view.flights[i];
+    if L::PAIRS != Pairs::Hard {
+        return one_by_one(plans, words, |other| pairs.next_event::<L, D>(view, plans, i, other));
+    }
     let (found, tied) = if me.time == now {
-        view.earliest::<FIELD, true>(instructions, me, words, images)
+        view.earliest::<L, true>(instructions, me, words, images)
     } else {
-        view.earliest::<FIELD, false>(instructions, me, words, images)
+        view.earliest::<L, false>(instructions, me, words, images)
     };
-    if tied { among_equals::<D, FIELD>(view, plans, me, words) } else { found }
+    if tied { one_by_one(plans, words, |other| view.contact::<L>(me, other)) } else { found }
 }
 
-/// The same when some come at exactly the same time: one by one, so that the order of the candidates shows nowhere.
-#[cold]
-fn among_equals<const D: usize, const FIELD: bool>(view: &View<'_, D>, plans: &[Plan], me: &Flight<D>, words: &[u32]) -> Meet {
+/// The same one by one: when some come at exactly the same time, so that the order of the candidates shows nowhere, and
+/// under laws that have no kernel of their own.
+#[inline(never)]
+fn one_by_one(plans: &[Plan], words: &[u32], time: impl Fn(Neighbour) -> f64) -> Meet {
     let mut found = Meet::NEVER;
     for neighbour in words.iter().copied().map(Neighbour::from_word) {
-        let meet = Meet { time: view.contact::<FIELD>(me, neighbour), neighbour };
+        let meet = Meet { time: time(neighbour), neighbour };
         if earlier(meet, found, plans) {
             found = meet;
         }

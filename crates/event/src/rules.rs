@@ -2,7 +2,7 @@
 
 use corpuscle_core::{Invalid, Vector};
 
-use crate::Restitution;
+use crate::{Pair, Restitution};
 
 /// The law of contact and the field in which particles fly.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,6 +15,8 @@ pub struct Rules<const D: usize> {
     pub elastic_below: f64,
     /// Acceleration `g` of every particle, the same everywhere.
     pub field: Vector<D>,
+    /// What two particles do to one another.
+    pub pair: Pair,
     /// Seed of the random numbers of walls with a temperature. The `n`-th such contact of a particle (from 0) draws from
     /// `Random::at(seed, Rules::THERMAL, n, particle)`, so that it does not depend on what other particles do.
     pub seed: u64,
@@ -23,7 +25,7 @@ pub struct Rules<const D: usize> {
 impl<const D: usize> Default for Rules<D> {
     /// Elastic contacts, no field.
     fn default() -> Self {
-        Self { restitution: Restitution::Constant(1.0), elastic_below: 0.0, field: Vector::ZERO, seed: 0 }
+        Self { restitution: Restitution::Constant(1.0), elastic_below: 0.0, field: Vector::ZERO, pair: Pair::Hard, seed: 0 }
     }
 }
 
@@ -43,7 +45,7 @@ impl<const D: usize> Rules<D> {
         if !self.field.is_finite() {
             return Err(Invalid::new("field", format!("{:?}", self.field.0), "finite numbers"));
         }
-        Ok(())
+        self.pair.validate()
     }
 
     /// Restitution of a contact approached at this normal speed, of two radii and a reduced mass.
@@ -58,6 +60,8 @@ impl<const D: usize> Rules<D> {
 pub struct Counts {
     /// Collisions between two particles.
     pub collisions: u64,
+    /// Passages of pairs over the edges of their wells, either way, and reflections there.
+    pub edges: u64,
     /// Contacts with walls, partitions and their rims, obstacles and the piston.
     pub wall_collisions: u64,
     /// Passages from cell to cell, where neighbours are found through cells.

@@ -4,6 +4,7 @@
 use corpuscle_core::Vector;
 
 use crate::lanes::{LANES, Lanes, Plain};
+use crate::law::Law;
 use crate::motion::Flight;
 
 /// A particle in one of its periodic images: where it is stored, and the number of the image.
@@ -126,9 +127,9 @@ impl<const D: usize> View<'_, D> {
     /// The states are compared at the later of the two own times. Every operation is odd under exchange of the two
     /// particles, so the time is the same bits whichever of them is searched for, and the same as that of
     /// [`earliest`](Self::earliest).
-    pub(crate) fn contact<const FIELD: bool>(&self, me: &Flight<D>, other: Neighbour) -> f64 {
+    pub(crate) fn contact<L: Law>(&self, me: &Flight<D>, other: Neighbour) -> f64 {
         let one = [other; LANES];
-        self.approach::<Plain, FIELD, false, true>(&Me::new(me), &one).contact().lanes()[0]
+        self.approach::<Plain, L, false, true>(&Me::new(me), &one).contact().lanes()[0]
     }
 
     /// The earliest collision of `me` among candidates (words), whose number is a multiple of [`LANES`]; and whether more
@@ -136,7 +137,7 @@ impl<const D: usize> View<'_, D> {
     ///
     /// `FRESH`: `me` is at a time not earlier than that of any candidate. `images`: some candidates are periodic images.
     #[inline]
-    pub(crate) fn earliest<const FIELD: bool, const FRESH: bool>(
+    pub(crate) fn earliest<L: Law, const FRESH: bool>(
         &self,
         instructions: Instructions,
         me: &Flight<D>,
@@ -149,35 +150,31 @@ impl<const D: usize> View<'_, D> {
             // SAFETY: the processor has AVX2.
             return unsafe {
                 if images {
-                    avx2::<D, FIELD, FRESH, true>(*self, me, candidates)
+                    avx2::<D, L, FRESH, true>(*self, me, candidates)
                 } else {
-                    avx2::<D, FIELD, FRESH, false>(*self, me, candidates)
+                    avx2::<D, L, FRESH, false>(*self, me, candidates)
                 }
             };
         }
         let _ = instructions;
         if images {
-            self.scan::<Plain, FIELD, FRESH, true>(me, candidates)
+            self.scan::<Plain, L, FRESH, true>(me, candidates)
         } else {
-            self.scan::<Plain, FIELD, FRESH, false>(me, candidates)
+            self.scan::<Plain, L, FRESH, false>(me, candidates)
         }
     }
 
     #[inline(always)]
-    fn scan<V: Lanes, const FIELD: bool, const FRESH: bool, const IMAGES: bool>(
-        &self,
-        me: &Flight<D>,
-        candidates: &[u32],
-    ) -> (Meet, bool) {
+    fn scan<V: Lanes, L: Law, const FRESH: bool, const IMAGES: bool>(&self, me: &Flight<D>, candidates: &[u32]) -> (Meet, bool) {
         let me = Me::<V, D>::new(me);
         let (mut best, mut tied) = (Meet::NEVER, false);
         for part in candidates.chunks(4 * LANES) {
             // The number of blocks is known to the compiler, so that everything stays in registers.
             let (time, which) = match part.len() / LANES {
-                1 => self.blocks::<V, FIELD, FRESH, IMAGES, 1>(&me, part),
-                2 => self.blocks::<V, FIELD, FRESH, IMAGES, 2>(&me, part),
-                3 => self.blocks::<V, FIELD, FRESH, IMAGES, 3>(&me, part),
-                _ => self.blocks::<V, FIELD, FRESH, IMAGES, 4>(&me, part),
+                1 => self.blocks::<V, L, FRESH, IMAGES, 1>(&me, part),
+                2 => self.blocks::<V, L, FRESH, IMAGES, 2>(&me, part),
+                3 => self.blocks::<V, L, FRESH, IMAGES, 3>(&me, part),
+                _ => self.blocks::<V, L, FRESH, IMAGES, 4>(&me, part),
             };
             if time > best.time || time == f64::INFINITY {
                 continue;
@@ -193,7 +190,7 @@ impl<const D: usize> View<'_, D> {
     /// First all approaches, then all times: so the long chain from square root to division is paid once, not for each
     /// block, since a processor looks only so far ahead.
     #[inline(always)]
-    fn blocks<V: Lanes, const FIELD: bool, const FRESH: bool, const IMAGES: bool, const N: usize>(
+    fn blocks<V: Lanes, L: Law, const FRESH: bool, const IMAGES: bool, const N: usize>(
         &self,
         me: &Me<V, D>,
         candidates: &[u32],
@@ -203,7 +200,7 @@ impl<const D: usize> View<'_, D> {
         let nothing = V::splat(0.0);
         let mut approaches = [Approach { reference: nothing, b: nothing, c: nothing, disc: nothing }; N];
         for (approach, block) in approaches.iter_mut().zip(blocks) {
-            *approach = self.approach::<V, FIELD, FRESH, IMAGES>(me, &block.map(Neighbour::from_word));
+            *approach = self.approach::<V, L, FRESH, IMAGES>(me, &block.map(Neighbour::from_word));
         }
         let (mut times, mut least) = ([nothing; N], V::splat(f64::INFINITY));
         for (time, approach) in times.iter_mut().zip(&approaches) {
@@ -226,7 +223,7 @@ impl<const D: usize> View<'_, D> {
     /// they recede (Bannerman, Strobl, Formella, Pöschel, Comput. Part. Mech. 1, 191 (2014),
     /// doi:10.1007/s40571-014-0021-8). In a field the relative motion is the same. Points never touch.
     #[inline(always)]
-    fn approach<V: Lanes, const FIELD: bool, const FRESH: bool, const IMAGES: bool>(
+    fn approach<V: Lanes, L: Law, const FRESH: bool, const IMAGES: bool>(
         &self,
         me: &Me<V, D>,
         four: &[Neighbour; LANES],
@@ -252,7 +249,7 @@ impl<const D: usize> View<'_, D> {
             if !FRESH {
                 r1 = r1.add(me.velocity[k].mul(mine));
             }
-            if FIELD {
+            if L::FIELD {
                 r1 = r1.add(g.mul(fall_mine));
                 r2 = r2.add(g.mul(fall_its));
                 v = number(D + 1 + k).add(g.mul(its)).sub(me.velocity[k].add(g.mul(mine)));
@@ -318,21 +315,22 @@ impl<V: Lanes, const D: usize> Me<V, D> {
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn avx2<const D: usize, const FIELD: bool, const FRESH: bool, const IMAGES: bool>(
+fn avx2<const D: usize, L: Law, const FRESH: bool, const IMAGES: bool>(
     view: View<'_, D>,
     me: &Flight<D>,
     candidates: &[u32],
 ) -> (Meet, bool) {
-    view.scan::<crate::lanes::Avx2, FIELD, FRESH, IMAGES>(me, candidates)
+    view.scan::<crate::lanes::Avx2, L, FRESH, IMAGES>(me, candidates)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::law::{Free, Hard, InField};
     use corpuscle_core::Random;
 
     /// Random flights and candidates, with images, in a field and without, many of them at exactly the same place in time.
-    fn compare<const D: usize, const FIELD: bool>(random: &mut Random) {
+    fn compare<const D: usize, L: Law>(random: &mut Random) {
         let flights: Vec<Flight<D>> = (0..40)
             .map(|_| Flight {
                 position: Vector::from_fn(|_| 4.0 * random.uniform()),
@@ -347,20 +345,20 @@ mod tests {
             .map(|_| Neighbour::new(random.below(40), random.below(3u32.pow(D as u32)) as u8).word())
             .collect();
         for me in &flights {
-            let fast = view.earliest::<FIELD, false>(Instructions::of_this_processor(), me, &candidates, true);
-            let plain = view.earliest::<FIELD, false>(Instructions::plain(), me, &candidates, true);
+            let fast = view.earliest::<L, false>(Instructions::of_this_processor(), me, &candidates, true);
+            let plain = view.earliest::<L, false>(Instructions::plain(), me, &candidates, true);
             assert_eq!(fast.0.time.to_bits(), plain.0.time.to_bits());
             assert_eq!(fast.1, plain.1);
-            let times = candidates.iter().map(|&word| view.contact::<FIELD>(me, Neighbour::from_word(word)));
+            let times = candidates.iter().map(|&word| view.contact::<L>(me, Neighbour::from_word(word)));
             let first = times.filter(|time| !time.is_nan()).fold(f64::INFINITY, f64::min);
             assert_eq!(fast.0.time.to_bits(), first.to_bits());
             if first < f64::INFINITY {
-                assert_eq!(view.contact::<FIELD>(me, fast.0.neighbour), first);
+                assert_eq!(view.contact::<L>(me, fast.0.neighbour), first);
                 // Seen from the other side the time is the same bits.
                 let (there, image) = (fast.0.neighbour.slot(), fast.0.neighbour.image() as u8);
                 let number = flights.iter().position(|flight| std::ptr::eq(flight, me)).unwrap_or_default();
                 let back = Neighbour::new(number as u32, opposite::<D>(image));
-                assert_eq!(view.contact::<FIELD>(&flights[there], back).to_bits(), first.to_bits());
+                assert_eq!(view.contact::<L>(&flights[there], back).to_bits(), first.to_bits());
             }
         }
     }
@@ -369,10 +367,10 @@ mod tests {
     fn the_search_gives_the_same_bits_whatever_the_instructions() {
         let mut random = Random::new(7, 0);
         for _ in 0..200 {
-            compare::<2, false>(&mut random);
-            compare::<2, true>(&mut random);
-            compare::<3, false>(&mut random);
-            compare::<3, true>(&mut random);
+            compare::<2, Free<Hard>>(&mut random);
+            compare::<2, InField<Hard>>(&mut random);
+            compare::<3, Free<Hard>>(&mut random);
+            compare::<3, InField<Hard>>(&mut random);
         }
     }
 }

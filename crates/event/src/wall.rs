@@ -4,6 +4,7 @@ use corpuscle_core::{Contact, Random, Vector};
 
 use crate::Rules;
 use crate::engine::EventDriven;
+use crate::law::Law;
 
 /// Stands for the piston where a plan names a surface.
 pub(crate) const PISTON: u32 = u32::MAX;
@@ -68,13 +69,13 @@ impl<const D: usize> EventDriven<D> {
     }
 
     /// Executes the planned contact with a surface or the piston. None when the plan was obsolete, and is made anew.
-    pub(crate) fn touch<const FIELD: bool>(&mut self, i: usize) -> Option<Contact<D>> {
+    pub(crate) fn touch<L: Law>(&mut self, i: usize) -> Option<Contact<D>> {
         let surface = self.met[i];
         if surface != PISTON {
-            return Some(self.bounce::<FIELD>(i, surface));
+            return Some(self.bounce::<L>(i, surface));
         }
         if self.piston.as_ref().is_some_and(|piston| piston.is_known_to(self.id(i))) {
-            return self.push_piston::<FIELD>(i);
+            return self.push_piston::<L>(i);
         }
         self.counts.stale += 1;
         self.plan_surface(i);
@@ -84,7 +85,7 @@ impl<const D: usize> EventDriven<D> {
 
     /// A particle touches a surface: `J = (1 + e) m (v.k - u)` where the surface moves at `u` along `k`, so that an elastic
     /// wall gives `v' = 2 u - v`.
-    fn bounce<const FIELD: bool>(&mut self, i: usize, number: u32) -> Contact<D> {
+    fn bounce<L: Law>(&mut self, i: usize, number: u32) -> Contact<D> {
         self.counts.wall_collisions += 1;
         self.count_stuck(i);
         self.settle(i);
@@ -111,7 +112,7 @@ impl<const D: usize> EventDriven<D> {
         };
         self.stamp(i);
         let contact = Contact { time, first: self.party(i, before), with, normal: k, impulse, distance };
-        self.plan_and_schedule::<FIELD>(i);
+        self.plan_and_schedule::<L>(i);
         contact
     }
 

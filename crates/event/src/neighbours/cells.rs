@@ -30,7 +30,7 @@ const MARGIN: f64 = 1.0 + 1e-6;
 
 impl<const D: usize> Cells<D> {
     /// `position`: where each particle is now.
-    pub(crate) fn new(boundary: &Boundary<D>, flights: &[Flight<D>], position: impl Fn(usize) -> Vector<D>) -> Self {
+    pub(crate) fn new(boundary: &Boundary<D>, flights: &[Flight<D>], core: f64, position: impl Fn(usize) -> Vector<D>) -> Self {
         let count = flights.len();
         let mut class = vec![0; count];
         let mut levels = vec![];
@@ -56,7 +56,7 @@ impl<const D: usize> Cells<D> {
                     larger.push((i, flights[i].radius));
                 }
             }
-            let reach = Reach::new(&bins, &larger, largest);
+            let reach = Reach::new(&bins, &larger, largest, core);
             levels.push(Level { bins, reach });
             rest = larger.into_iter().map(|(i, _)| i).collect();
             if rest.is_empty() {

@@ -45,8 +45,8 @@ struct Node {
 
 impl<const D: usize> Reach<D> {
     /// Registers the `larger` particles (slot and radius, sorted by slot), whose places `bins` knows; the others are at
-    /// most of radius `largest_small`.
-    pub(crate) fn new(bins: &Bins<D, 4>, larger: &[(usize, f64)], largest_small: f64) -> Self {
+    /// most of radius `largest_small`. No centre comes nearer to a larger one than `core` of its radius.
+    pub(crate) fn new(bins: &Bins<D, 4>, larger: &[(usize, f64)], largest_small: f64, core: f64) -> Self {
         let mut reach = Self { heads: vec![], nodes: vec![], shapes: vec![], owners: vec![] };
         if larger.is_empty() {
             return reach;
@@ -54,7 +54,7 @@ impl<const D: usize> Reach<D> {
         reach.heads = vec![NONE; bins.cells.iter().product::<u32>() as usize];
         for &(slot, radius) in larger {
             let shape = reach.shapes.iter().position(|shape| shape.radius == radius).unwrap_or_else(|| {
-                reach.shapes.push(Shape { radius, offsets: offsets(bins, radius, largest_small) });
+                reach.shapes.push(Shape { radius, offsets: offsets(bins, radius, largest_small, core) });
                 reach.shapes.len() - 1
             });
             reach.owners.push(Owner { slot: slot as u32, shape: shape as u32, first: reach.nodes.len() as u32 });
@@ -127,9 +127,9 @@ impl<const D: usize> Reach<D> {
 }
 
 /// Offsets of all cells in which a small particle can touch a sphere of this radius centred in the cell of offset 0.
-fn offsets<const D: usize>(bins: &Bins<D, 4>, radius: f64, largest_small: f64) -> Vec<[i32; D]> {
+fn offsets<const D: usize>(bins: &Bins<D, 4>, radius: f64, largest_small: f64, core: f64) -> Vec<[i32; D]> {
     let far = (radius + largest_small) * (1.0 + 1e-6);
-    let near = radius * (1.0 - 1e-6);
+    let near = core * radius * (1.0 - 1e-6);
     let reach: [i32; D] = std::array::from_fn(|k| (far / bins.width[k]).ceil() as i32);
     let total: i64 = reach.iter().map(|&n| i64::from(2 * n + 1)).product();
     // Where outer cells have no end, distances say nothing.

@@ -4,6 +4,8 @@
 //! for its next contact. `O(N^2)` work per event, no cells, no queue, no local times, and none of the engine's code:
 //! roots of motion in a field are found by sampling and bisection.
 
+mod pair;
+
 use corpuscle_core::{Axis, Boundary, Particles, Random, Vector};
 use corpuscle_event::{Restitution, Rules};
 
@@ -23,11 +25,19 @@ pub(crate) struct Reference<const D: usize> {
     pub(crate) time: f64,
     above_piston: Vec<bool>,
     thermal_contacts: Vec<u64>,
+    /// Which pairs are inside their wells.
+    pub(crate) bonds: Vec<Vec<bool>>,
+    /// Radii are this times those of the particles, and grow at this rate.
+    pub(crate) scale: f64,
+    pub(crate) growth: f64,
 }
 
 #[derive(Clone, Copy)]
 enum Next<const D: usize> {
+    /// Cores meet.
     Pair(usize, usize, Vector<D>),
+    /// A pair comes to the edge of its well.
+    Edge(usize, usize, Vector<D>),
     /// A face of the box: particle, axis, upper or lower.
     Face(usize, usize, bool),
     /// A side of a plate: the normal is this much of the axis.
@@ -54,7 +64,25 @@ impl<const D: usize> Reference<D> {
     pub(crate) fn new(boundary: Boundary<D>, particles: Particles<D>, rules: Rules<D>) -> Self {
         let above = |r: &Vector<D>| boundary.piston.is_some_and(|piston| r[piston.axis] > piston.position);
         let above_piston = particles.position.iter().map(above).collect();
-        Self { thermal_contacts: vec![0; particles.len()], boundary, rules, particles, time: 0.0, above_piston }
+        let n = particles.len();
+        let mut plain = Self {
+            thermal_contacts: vec![0; n],
+            boundary,
+            rules,
+            particles,
+            time: 0.0,
+            above_piston,
+            bonds: vec![vec![false; n]; n],
+            scale: 1.0,
+            growth: 0.0,
+        };
+        for i in 0..n {
+            for j in 0..n {
+                let r = plain.boundary.displacement(plain.particles.position[i], plain.particles.position[j]);
+                plain.bonds[i][j] = i != j && r.norm() < plain.edge(i, j);
+            }
+        }
+        plain
     }
 
     /// Moves on to the next contact, if there is one before `horizon` more time, and executes it.
@@ -83,9 +111,13 @@ impl<const D: usize> Reference<D> {
         for i in 0..n {
             for j in i + 1..n {
                 for shift in self.shifts(2) {
-                    let t = self.pair_delay(i, j, shift);
-                    if t < best.0 {
-                        best = (t, Some(Next::Pair(i, j, shift)));
+                    for (t, next) in [
+                        (self.core_delay(i, j, shift), Next::Pair(i, j, shift)),
+                        (self.edge_delay(i, j, shift), Next::Edge(i, j, shift)),
+                    ] {
+                        if t < best.0 {
+                            best = (t, Some(next));
+                        }
                     }
                 }
             }
@@ -118,6 +150,7 @@ impl<const D: usize> Reference<D> {
             piston.velocity += a * delay;
         }
         self.time += delay;
+        self.scale += self.growth * delay;
     }
 
     fn execute(&mut self, next: Next<D>) -> Option<Event> {
@@ -126,6 +159,11 @@ impl<const D: usize> Reference<D> {
             Next::Pair(i, j, shift) => {
                 let r = position(j) + shift - position(i);
                 self.collide_pair(i, j, r / r.norm());
+                (i, Some(j))
+            }
+            Next::Edge(i, j, shift) => {
+                let r = position(j) + shift - position(i);
+                self.cross(i, j, r / r.norm());
                 (i, Some(j))
             }
             Next::Face(i, axis, upper) => {
@@ -183,12 +221,6 @@ impl<const D: usize> Reference<D> {
             }
         }
         shifts
-    }
-
-    fn pair_delay(&self, i: usize, j: usize, shift: Vector<D>) -> f64 {
-        let p = &self.particles;
-        let (r, v) = (p.position[j] + shift - p.position[i], p.velocity[j] - p.velocity[i]);
-        sphere_delay(r, v, p.radius[i] + p.radius[j])
     }
 
     fn faces(&self, i: usize, best: &mut (f64, Option<Next<D>>)) {
@@ -292,7 +324,10 @@ impl<const D: usize> Reference<D> {
     fn collide_pair(&mut self, i: usize, j: usize, k: Vector<D>) {
         let p = &self.particles;
         let (mass, velocity) = (p.mass[j], p.velocity[j]);
-        let impulse = self.collide(i, k, &Other { velocity: velocity.dot(k), inverse_mass: 1.0 / mass, radius: p.radius[j] });
+        // Contact distances that grow meet as moving walls do: reflection in the frame of the surface.
+        let growth = (p.radius[i] + p.radius[j]) * self.growth;
+        let other = Other { velocity: velocity.dot(k) - growth, inverse_mass: 1.0 / mass, radius: p.radius[j] };
+        let impulse = self.collide(i, k, &other);
         self.particles.velocity[j] = velocity + k * (impulse / mass);
     }
 
