@@ -26,7 +26,9 @@ mod constraint;
 mod engine;
 pub mod force;
 mod image;
+mod instructions;
 mod integrator;
+mod motion;
 mod neighbours;
 mod system;
 

@@ -6,10 +6,13 @@ mod direct;
 mod few;
 mod grains;
 mod lanes;
+mod scale;
 
 use super::{Force, finite, not_negative};
-use direct::{Masses, Scale};
+use crate::instructions::Instructions;
+use direct::Masses;
 use grains::attract_grains;
+use scale::Scale;
 
 /// Up to so many particles the plain double loop is the fastest.
 const FEW: usize = 12;
@@ -23,12 +26,13 @@ pub struct Gravity<const D: usize> {
     constant: f64,
     softening: f64,
     masses: Masses<D>,
+    instructions: Instructions,
 }
 
 impl<const D: usize> Gravity<D> {
     /// Gravity of the given constant `G` and softening length.
     pub fn new(constant: f64, softening: f64) -> Self {
-        Self { constant, softening, masses: Masses::default() }
+        Self { constant, softening, masses: Masses::default(), instructions: Instructions::detect() }
     }
 
     /// The constant `G`.
@@ -82,14 +86,14 @@ impl<const D: usize> Force<D> for Gravity<D> {
             few::attract(self.constant, self.softening, particles, remainder, acceleration);
             return;
         }
-        let scale = Scale::new(self.softening, &particles.position);
+        let scale = Scale::new(self.softening, &particles.position, self.instructions);
         let softening_squared = (self.softening * scale.length) * (self.softening * scale.length);
         let masses = &mut self.masses;
         masses.load(self.constant, scale, particles, remainder);
-        masses.attract_each_other(softening_squared, !remainder.is_empty());
+        masses.attract_each_other(softening_squared, !remainder.is_empty(), self.instructions);
         masses.add_to(scale, acceleration);
         if masses.index.len() < particles.len() {
-            attract_grains(self.constant, scale, softening_squared, &masses.index, particles, acceleration);
+            attract_grains(self.constant, scale, softening_squared, &masses.index, particles, acceleration, self.instructions);
         }
     }
 
@@ -116,3 +120,6 @@ impl<const D: usize> Force<D> for Gravity<D> {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests;

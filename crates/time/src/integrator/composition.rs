@@ -55,12 +55,12 @@ pub(crate) fn step<const D: usize>(
     let mut time = start;
     for (number, stage) in stages.iter().enumerate() {
         system.accelerate(time, (drifted - kicked) * dt);
-        system.kick(stage.kick * dt);
         kicked += stage.kick;
         if stage.drift == 0.0 {
+            system.kick(stage.kick * dt);
             continue;
         }
-        system.drift(stage.drift * dt);
+        system.kick_and_drift(stage.kick * dt, stage.drift * dt);
         drifted += stage.drift;
         let last = stages[number + 1..].iter().all(|stage| stage.drift == 0.0);
         time = if last { end } else { start + drifted * dt };

@@ -278,7 +278,7 @@ impl<const D: usize> GaussRadau<D> {
             system.remainder[i] = position.lost;
             system.particles.velocity[i] = v + (lost + dv);
         }
-        system.fresh = false;
+        (system.fresh, system.doubtful) = (false, true);
     }
 }
 

@@ -3,22 +3,12 @@
 use corpuscle_core::{Particles, Vector};
 use rayon::prelude::*;
 
-use super::lanes::{LANES, Lanes, dispatch, inverse_cube_of_root, sum};
+use super::lanes::{LANES, guess, inverse_cube_of_root, sum};
+use super::scale::Scale;
+use crate::instructions::{Instructions, Kernel};
 
-/// Eight masses side by side.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(64))]
-pub(super) struct Chunk<const D: usize> {
-    pub(super) position: [Lanes; D],
-    /// `G m`; zero in lanes that fill up the last chunk.
-    pub(super) strength: Lanes,
-    pub(super) acceleration: [Lanes; D],
-    /// What rounding took from the positions.
-    pub(super) remainder: [Lanes; D],
-}
-
-/// Chunks of a block. Two blocks of 256 masses fit the first-level cache.
-const BLOCK: usize = 32;
+/// Masses in a block, at most: what is needed of one block fits the first-level cache.
+pub(super) const BLOCK: usize = 256;
 /// Blocks are smaller where there would be fewer than this many, so that threads find enough to do.
 const LEAST_BLOCKS: usize = 16;
 /// Masses from which more than one thread is worth the waiting at the end of a round.
@@ -26,66 +16,64 @@ const WORTH_THREADS: usize = 1024;
 /// Masses attracted at a time, so that each number loaded serves more than once.
 const ROWS: usize = 2;
 
-/// A power of two by which lengths are multiplied, so that the squares of distances stay within single precision: the
-/// largest coordinate becomes about `2^60`, and distances down to `2^-123` of it count. Powers of two round nothing.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Scale {
-    pub(super) length: f64,
-}
+/// A number of each mass of a block.
+type Column = [f64; BLOCK];
 
-impl Scale {
-    pub(super) fn new<const D: usize>(softening: f64, positions: &[Vector<D>]) -> Self {
-        let mut largest = [0.0; D];
-        for r in positions {
-            for k in 0..D {
-                largest[k] = if r[k].abs() > largest[k] { r[k].abs() } else { largest[k] };
-            }
-        }
-        let largest = largest.into_iter().fold(softening, f64::max);
-        // The exponent alone: a power of two at most twice too small.
-        let exponent = ((largest.to_bits() >> 52) & 0x7ff) as i32 - 1023;
-        Self { length: if largest > 0.0 { power_of_two((60 - exponent).clamp(-500, 500)) } else { 1.0 } }
-    }
-
-    /// What accelerations `G m r / r^3` of scaled lengths are multiplied by.
-    pub(super) fn acceleration(self) -> f64 {
-        self.length * self.length
-    }
-}
-
-fn power_of_two(exponent: i32) -> f64 {
-    f64::from_bits(((exponent + 1023) as u64) << 52)
+/// Some of the masses, one array a component. Only whole groups of lanes are used; places that hold no mass have strength zero
+/// and are outside the system, where they coincide with nobody.
+#[derive(Clone, Debug)]
+#[repr(align(64))]
+struct Block<const D: usize> {
+    /// Groups of lanes in use.
+    groups: usize,
+    position: [Column; D],
+    /// What rounding took from the positions.
+    remainder: [Column; D],
+    /// `G m`.
+    strength: Column,
+    acceleration: [Column; D],
 }
 
 /// The masses of a system, and how they attract each other.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Masses<const D: usize> {
     pub(super) index: Vec<usize>,
-    pub(super) chunks: Vec<Chunk<D>>,
+    blocks: Vec<Block<D>>,
+    /// Masses in each block but the last.
+    size: usize,
 }
 
 impl<const D: usize> Masses<D> {
     /// Takes the particles that have mass.
     pub(super) fn load(&mut self, constant: f64, scale: Scale, particles: &Particles<D>, remainder: &[Vector<D>]) {
         self.index.clear();
-        self.index.extend((0..particles.len()).filter(|&i| particles.mass[i] > 0.0));
-        self.chunks.clear();
-        for indices in self.index.chunks(LANES) {
-            // Lanes without a mass are outside the system, where they coincide with nobody.
-            let mut chunk = Chunk {
-                position: [[power_of_two(62); LANES]; D],
-                strength: [0.0; LANES],
-                acceleration: [[0.0; LANES]; D],
-                remainder: [[0.0; LANES]; D],
-            };
-            for (lane, &i) in indices.iter().enumerate() {
-                chunk.strength[lane] = constant * particles.mass[i];
+        for (chunk, masses) in particles.mass.chunks(LANES).enumerate() {
+            // Among grains most chunks have no mass at all.
+            if masses.iter().fold(false, |any, &mass| any | (mass > 0.0)) {
+                let indices = (0..masses.len()).filter(|&lane| masses[lane] > 0.0);
+                self.index.extend(indices.map(|lane| chunk * LANES + lane));
+            }
+        }
+        self.size = (self.index.len().div_ceil(LEAST_BLOCKS * LANES) * LANES).clamp(LANES, BLOCK);
+        let empty = || Block {
+            groups: 0,
+            position: [[0.0; BLOCK]; D],
+            remainder: [[0.0; BLOCK]; D],
+            strength: [0.0; BLOCK],
+            acceleration: [[0.0; BLOCK]; D],
+        };
+        self.blocks.resize_with(self.index.len().div_ceil(self.size), empty);
+        for (indices, block) in self.index.chunks(self.size).zip(&mut self.blocks) {
+            block.groups = indices.len().div_ceil(LANES);
+            for place in 0..block.groups * LANES {
+                let i = indices.get(place);
+                block.strength[place] = i.map_or(0.0, |&i| constant * particles.mass[i]);
                 for k in 0..D {
-                    chunk.position[k][lane] = particles.position[i][k] * scale.length;
-                    chunk.remainder[k][lane] = remainder.get(i).map_or(0.0, |remainder| remainder[k] * scale.length);
+                    block.position[k][place] = i.map_or(Scale::OUTSIDE, |&i| particles.position[i][k] * scale.length);
+                    block.remainder[k][place] = i.and_then(|&i| remainder.get(i)).map_or(0.0, |r| r[k] * scale.length);
+                    block.acceleration[k][place] = 0.0;
                 }
             }
-            self.chunks.push(chunk);
         }
     }
 
@@ -93,125 +81,222 @@ impl<const D: usize> Masses<D> {
     ///
     /// Blocks meet in rounds, all blocks in each round, no block twice: threads may share a round without ever writing to the
     /// same place, and each sum is made in the order of the rounds, however many threads there are.
-    pub(super) fn attract_each_other(&mut self, softening_squared: f64, precise: bool) {
-        let many = self.index.len() >= WORTH_THREADS;
-        let size = self.chunks.len().div_ceil(LEAST_BLOCKS).clamp(1, BLOCK);
-        let mut blocks: Vec<&mut [Chunk<D>]> = self.chunks.chunks_mut(size).collect();
-        let meet = |first: &mut [Chunk<D>], second: &mut [Chunk<D>]| {
-            if precise { meet::<D, true>(first, second, softening_squared) } else { meet::<D, false>(first, second, softening_squared) }
-        };
-        let alone = |block: &mut &mut [Chunk<D>]| {
-            for i in 0..block.len() {
-                let (own, others) = block[i..].split_at_mut(1);
-                within(&mut own[0], softening_squared, precise);
-                meet(own, others);
-            }
-        };
-        if many { blocks.par_iter_mut().for_each(alone) } else { blocks.iter_mut().for_each(alone) }
-        if blocks.len() % 2 == 1 {
-            blocks.push(&mut []);
-        }
-        for _ in 1..blocks.len() {
-            let half = blocks.len() / 2;
-            let (front, back) = blocks.split_at_mut(half);
-            if many {
-                front.par_iter_mut().zip(back.par_iter_mut().rev()).for_each(|(first, second)| meet(first, second));
+    pub(super) fn attract_each_other(&mut self, softening_squared: f64, precise: bool, instructions: Instructions) {
+        let threads = self.index.len() >= WORTH_THREADS;
+        let alone = |block: &mut &mut Block<D>| {
+            if precise {
+                instructions.run(Seclusion::<D, true> { block, softening_squared });
             } else {
-                front.iter_mut().zip(back.iter_mut().rev()).for_each(|(first, second)| meet(first, second));
+                instructions.run(Seclusion::<D, false> { block, softening_squared });
             }
-            blocks[1..].rotate_right(1);
+        };
+        let meet = |(first, second): (&mut Option<&mut Block<D>>, &mut Option<&mut Block<D>>)| {
+            let (Some(first), Some(second)) = (first, second) else { return };
+            if precise {
+                instructions.run(Meeting::<D, true> { first, second, softening_squared });
+            } else {
+                instructions.run(Meeting::<D, false> { first, second, softening_squared });
+            }
+        };
+        let mut teams: Vec<&mut Block<D>> = self.blocks.iter_mut().collect();
+        if threads {
+            teams.par_iter_mut().for_each(alone)
+        } else {
+            teams.iter_mut().for_each(alone)
+        }
+        let mut teams: Vec<Option<&mut Block<D>>> = teams.into_iter().map(Some).collect();
+        if teams.len() % 2 == 1 {
+            teams.push(None); // whoever meets nobody rests
+        }
+        for _ in 1..teams.len() {
+            let half = teams.len() / 2;
+            let (front, back) = teams.split_at_mut(half);
+            if threads {
+                front.par_iter_mut().zip(back.par_iter_mut().rev()).for_each(meet);
+            } else {
+                front.iter_mut().zip(back.iter_mut().rev()).for_each(meet);
+            }
+            teams[1..].rotate_right(1);
         }
     }
 
-    /// What is to be added to the acceleration of each particle with mass.
+    /// Adds the sums to the accelerations of the particles with mass.
     pub(super) fn add_to(&self, scale: Scale, acceleration: &mut [Vector<D>]) {
         let factor = scale.acceleration();
-        for (indices, chunk) in self.index.chunks(LANES).zip(&self.chunks) {
-            for (lane, &i) in indices.iter().enumerate() {
-                acceleration[i] += Vector::from_fn(|k| chunk.acceleration[k][lane] * factor);
+        for (indices, block) in self.index.chunks(self.size).zip(&self.blocks) {
+            for (place, &i) in indices.iter().enumerate() {
+                acceleration[i] += Vector::from_fn(|k| block.acceleration[k][place] * factor);
             }
         }
     }
 }
 
-dispatch! {
-    /// Every pair of one mass of the first block and one of the second.
-    fn meet<const D: usize, const PRECISE: bool>(first: &mut [Chunk<D>], second: &mut [Chunk<D>], softening_squared: f64) = meet_body
+/// Every pair of one mass of the first block and one of the second.
+struct Meeting<'a, const D: usize, const PRECISE: bool> {
+    first: &'a mut Block<D>,
+    second: &'a mut Block<D>,
+    softening_squared: f64,
 }
 
-#[inline(always)]
-fn meet_body<const D: usize, const PRECISE: bool>(first: &mut [Chunk<D>], second: &mut [Chunk<D>], softening_squared: f64) {
-    for chunk in first {
-        let mut pull = [[0.0; LANES]; D];
-        for pair in 0..LANES / ROWS {
-            let row: [usize; ROWS] = std::array::from_fn(|r| pair * ROWS + r);
-            let mut total = [[[0.0; LANES]; D]; ROWS];
-            for other in second.iter_mut() {
-                for r in 0..ROWS {
-                    let mut arrow = [[0.0; LANES]; D];
-                    let mut d2 = [softening_squared; LANES];
-                    for k in 0..D {
-                        let (x, lost) = (chunk.position[k][row[r]], chunk.remainder[k][row[r]]);
-                        for lane in 0..LANES {
-                            arrow[k][lane] = other.position[k][lane] - x;
-                            if PRECISE {
-                                arrow[k][lane] += other.remainder[k][lane] - lost;
-                            }
-                            d2[lane] += arrow[k][lane] * arrow[k][lane];
-                        }
-                    }
-                    let w = inverse_cube_of_root(&d2);
-                    let own = chunk.strength[row[r]];
-                    let (mut given, mut taken) = ([0.0; LANES], [0.0; LANES]);
-                    for lane in 0..LANES {
-                        given[lane] = own * w[lane];
-                        taken[lane] = other.strength[lane] * w[lane];
-                    }
-                    for k in 0..D {
-                        for lane in 0..LANES {
-                            other.acceleration[k][lane] -= given[lane] * arrow[k][lane];
-                            total[r][k][lane] += taken[lane] * arrow[k][lane];
-                        }
-                    }
-                }
-            }
-            for r in 0..ROWS {
+impl<const D: usize, const PRECISE: bool> Kernel for Meeting<'_, D, PRECISE> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { first, second, softening_squared } = self;
+        let count = (second.groups * LANES).min(BLOCK);
+        let Block { position, remainder, strength, acceleration, .. } = second;
+        let (mut weights, mut guesses) = ([[0.0; BLOCK]; ROWS], [[0.0; BLOCK]; ROWS]);
+        for rows in 0..first.groups * LANES / ROWS {
+            let rows: [Row<D>; ROWS] = std::array::from_fn(|r| first.row(rows * ROWS + r));
+            measure::<D, PRECISE>(&rows, softening_squared, count, position, remainder, &mut weights, &mut guesses);
+            give::<D, PRECISE>(&rows, count, position, remainder, strength, &guesses, &mut weights, acceleration);
+            for (row, weights) in rows.iter().zip(&weights) {
+                let taken = take::<D, PRECISE>(row, count, position, remainder, weights);
                 for k in 0..D {
-                    pull[k][row[r]] = sum(&total[r][k]);
+                    first.acceleration[k][row.place] += taken[k];
                 }
-            }
-        }
-        for k in 0..D {
-            for lane in 0..LANES {
-                chunk.acceleration[k][lane] += pull[k][lane];
             }
         }
     }
 }
 
-/// The pairs within a chunk, each seen from both sides.
-fn within<const D: usize>(chunk: &mut Chunk<D>, softening_squared: f64, precise: bool) {
-    for i in 0..LANES {
-        let mut arrow = [[0.0; LANES]; D];
-        let mut d2 = [softening_squared; LANES];
-        for k in 0..D {
-            for lane in 0..LANES {
-                arrow[k][lane] = chunk.position[k][lane] - chunk.position[k][i];
-                if precise {
-                    arrow[k][lane] += chunk.remainder[k][lane] - chunk.remainder[k][i];
+/// The pairs within a block, each seen from both sides.
+struct Seclusion<'a, const D: usize, const PRECISE: bool> {
+    block: &'a mut Block<D>,
+    softening_squared: f64,
+}
+
+impl<const D: usize, const PRECISE: bool> Kernel for Seclusion<'_, D, PRECISE> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { block, softening_squared } = self;
+        let count = (block.groups * LANES).min(BLOCK);
+        let (mut weights, mut guesses) = ([[0.0; BLOCK]; ROWS], [[0.0; BLOCK]; ROWS]);
+        for rows in 0..count / ROWS {
+            let rows: [Row<D>; ROWS] = std::array::from_fn(|r| block.row(rows * ROWS + r));
+            let Block { position, remainder, strength, acceleration, .. } = &mut *block;
+            measure::<D, PRECISE>(&rows, softening_squared, count, position, remainder, &mut weights, &mut guesses);
+            for ((row, weights), guesses) in rows.iter().zip(&mut weights).zip(&guesses) {
+                for place in 0..count {
+                    weights[place] = strength[place] * inverse_cube_of_root(weights[place], guesses[place]);
                 }
-                d2[lane] += arrow[k][lane] * arrow[k][lane];
+                weights[row.place] = 0.0; // itself
+                let taken = take::<D, PRECISE>(row, count, position, remainder, weights);
+                for k in 0..D {
+                    acceleration[k][row.place] += taken[k];
+                }
             }
         }
-        d2[i] = 1.0; // itself, with no arrow to pull along
-        for lane in 0..LANES {
-            // Lanes without a mass coincide with each other.
-            d2[lane] = if chunk.strength[lane] == 0.0 { 1.0 } else { d2[lane] };
+    }
+}
+
+/// One mass of a block.
+#[derive(Clone, Copy)]
+struct Row<const D: usize> {
+    place: usize,
+    position: [f64; D],
+    remainder: [f64; D],
+    strength: f64,
+}
+
+impl<const D: usize> Row<D> {
+    /// Component `k` of the arrow to a mass of another block.
+    #[inline(always)]
+    fn arrow<const PRECISE: bool>(&self, k: usize, place: usize, position: &[Column; D], remainder: &[Column; D]) -> f64 {
+        let x = position[k][place] - self.position[k];
+        if PRECISE { x + (remainder[k][place] - self.remainder[k]) } else { x }
+    }
+}
+
+/// Squares of the distances of some masses from those of a block, and guesses of the inverse distances.
+#[inline(always)]
+fn measure<const D: usize, const PRECISE: bool>(
+    rows: &[Row<D>; ROWS],
+    softening_squared: f64,
+    count: usize,
+    position: &[Column; D],
+    remainder: &[Column; D],
+    squares: &mut [Column; ROWS],
+    guesses: &mut [[f32; BLOCK]; ROWS],
+) {
+    for place in 0..count {
+        for r in 0..ROWS {
+            let mut square = softening_squared;
+            for k in 0..D {
+                let x = rows[r].arrow::<PRECISE>(k, place, position, remainder);
+                square += x * x;
+            }
+            squares[r][place] = square;
+            guesses[r][place] = guess(square);
         }
-        let w = inverse_cube_of_root(&d2);
+    }
+}
+
+/// What the masses of the block get from the rows; squares become what the rows take, per length of the arrow.
+#[inline(always)]
+fn give<const D: usize, const PRECISE: bool>(
+    rows: &[Row<D>; ROWS],
+    count: usize,
+    position: &[Column; D],
+    remainder: &[Column; D],
+    strength: &Column,
+    guesses: &[[f32; BLOCK]; ROWS],
+    weights: &mut [Column; ROWS],
+    acceleration: &mut [Column; D],
+) {
+    for place in 0..count {
+        let mut given = [0.0; D];
+        for r in 0..ROWS {
+            let w = inverse_cube_of_root(weights[r][place], guesses[r][place]);
+            weights[r][place] = strength[place] * w;
+            let give = rows[r].strength * w;
+            for k in 0..D {
+                given[k] += give * rows[r].arrow::<PRECISE>(k, place, position, remainder);
+            }
+        }
         for k in 0..D {
-            let pulls = std::array::from_fn(|lane| chunk.strength[lane] * w[lane] * arrow[k][lane]);
-            chunk.acceleration[k][i] += sum(&pulls);
+            acceleration[k][place] -= given[k];
+        }
+    }
+}
+
+/// What a row gets from the masses of the block, lane by lane.
+#[inline(always)]
+fn take<const D: usize, const PRECISE: bool>(
+    row: &Row<D>,
+    count: usize,
+    position: &[Column; D],
+    remainder: &[Column; D],
+    weights: &Column,
+) -> [f64; D] {
+    let (weights, _) = weights[..count].as_chunks::<LANES>();
+    std::array::from_fn(|k| {
+        let (position, _) = position[k][..count].as_chunks::<LANES>();
+        let (remainder, _) = remainder[k][..count].as_chunks::<LANES>();
+        let mut taken = [0.0; LANES];
+        for ((weight, x), lost) in weights.iter().zip(position).zip(remainder) {
+            for lane in 0..LANES {
+                let mut arrow = x[lane] - row.position[k];
+                if PRECISE {
+                    arrow += lost[lane] - row.remainder[k];
+                }
+                taken[lane] += weight[lane] * arrow;
+            }
+        }
+        sum(&taken)
+    })
+}
+
+impl<const D: usize> Block<D> {
+    fn row(&self, place: usize) -> Row<D> {
+        Row {
+            place,
+            position: std::array::from_fn(|k| self.position[k][place]),
+            remainder: std::array::from_fn(|k| self.remainder[k][place]),
+            strength: self.strength[place],
         }
     }
 }

@@ -3,11 +3,12 @@
 use corpuscle_core::{Particles, Vector};
 use rayon::prelude::*;
 
-use super::direct::Scale;
-use super::lanes::{LANES, Lanes, dispatch, inverse_cube_of_root};
+use super::lanes::{guess, inverse_cube_of_root};
+use super::scale::Scale;
+use crate::instructions::{Instructions, Kernel};
 
 /// Grains handled by one thread at a time.
-const BLOCK: usize = 512;
+const BLOCK: usize = 256;
 /// Pulls from which more than one thread is worth the waiting.
 const WORTH_THREADS: usize = 1 << 17;
 
@@ -26,16 +27,16 @@ pub(super) fn attract_grains<const D: usize>(
     masses: &[usize],
     particles: &Particles<D>,
     acceleration: &mut [Vector<D>],
+    instructions: Instructions,
 ) {
     let Particles { position, mass, .. } = particles;
     let factor = scale.acceleration();
-    let sources: Vec<Source<D>> = masses
-        .iter()
-        .map(|&i| Source { position: position[i] * scale.length, strength: constant * mass[i] * factor })
-        .collect();
+    let sources: Vec<Source<D>> =
+        masses.iter().map(|&i| Source { position: position[i] * scale.length, strength: constant * mass[i] * factor }).collect();
     let attract = |((position, mass), acceleration): ((&[Vector<D>], &[f64]), &mut [Vector<D>])| {
         if mass.contains(&0.0) {
-            attract_block(&sources, scale.length, softening_squared, position, mass, acceleration);
+            let (sources, length) = (sources.as_slice(), scale.length);
+            instructions.run(Attraction { sources, length, softening_squared, position, mass, acceleration });
         }
     };
     if particles.len() * masses.len() >= WORTH_THREADS {
@@ -46,80 +47,56 @@ pub(super) fn attract_grains<const D: usize>(
     }
 }
 
-dispatch! {
-    /// Eight grains at a time; the last few share the lanes with copies of themselves.
-    fn attract_block<const D: usize>(
-        sources: &[Source<D>],
-        length: f64,
-        softening_squared: f64,
-        position: &[Vector<D>],
-        mass: &[f64],
-        acceleration: &mut [Vector<D>],
-    ) = attract_block_body
-}
-
-#[inline(always)]
-fn attract_block_body<const D: usize>(
-    sources: &[Source<D>],
+/// Blocks are laid out in lanes, attracted, and read back, in three loops: merged, they hide the lanes from a compiler.
+struct Attraction<'a, const D: usize> {
+    sources: &'a [Source<D>],
     length: f64,
     softening_squared: f64,
-    position: &[Vector<D>],
-    mass: &[f64],
-    acceleration: &mut [Vector<D>],
-) {
-    let (positions, last_positions) = position.as_chunks::<LANES>();
-    let (masses, last_masses) = mass.as_chunks::<LANES>();
-    let (accelerations, last_accelerations) = acceleration.as_chunks_mut::<LANES>();
-    for ((position, mass), acceleration) in positions.iter().zip(masses).zip(accelerations) {
-        attract_chunk(sources, length, softening_squared, position, mass, acceleration);
-    }
-    if let Some(&one) = last_positions.last() {
-        let count = last_positions.len();
-        let (mut position, mut mass, mut acceleration) = ([one; LANES], [1.0; LANES], [Vector::ZERO; LANES]);
-        position[..count].copy_from_slice(last_positions);
-        mass[..count].copy_from_slice(last_masses);
-        acceleration[..count].copy_from_slice(last_accelerations);
-        attract_chunk(sources, length, softening_squared, &position, &mass, &mut acceleration);
-        last_accelerations.copy_from_slice(&acceleration[..count]);
-    }
+    position: &'a [Vector<D>],
+    mass: &'a [f64],
+    acceleration: &'a mut [Vector<D>],
 }
 
-#[inline(always)]
-fn attract_chunk<const D: usize>(
-    sources: &[Source<D>],
-    length: f64,
-    softening_squared: f64,
-    position: &[Vector<D>; LANES],
-    mass: &Lanes,
-    acceleration: &mut [Vector<D>; LANES],
-) {
-    let mut place = [[0.0; LANES]; D];
-    for lane in 0..LANES {
-        for k in 0..D {
-            place[k][lane] = position[lane][k] * length;
-        }
-    }
-    let mut pull = [[0.0; LANES]; D];
-    for source in sources {
-        let mut arrow = [[0.0; LANES]; D];
-        let mut d2 = [softening_squared; LANES];
-        for k in 0..D {
-            for lane in 0..LANES {
-                arrow[k][lane] = source.position[k] - place[k][lane];
-                d2[lane] += arrow[k][lane] * arrow[k][lane];
+impl<const D: usize> Kernel for Attraction<'_, D> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { sources, length, softening_squared, position, mass, acceleration } = self;
+        let mut places = [[0.0; BLOCK]; D];
+        let mut squares = [0.0; BLOCK];
+        let mut guesses = [0.0f32; BLOCK];
+        let blocks = position.chunks(BLOCK).zip(mass.chunks(BLOCK)).zip(acceleration.chunks_mut(BLOCK));
+        for ((position, mass), acceleration) in blocks {
+            for (i, r) in position.iter().enumerate() {
+                for k in 0..D {
+                    places[k][i] = r[k] * length;
+                }
             }
-        }
-        let w = inverse_cube_of_root(&d2);
-        for k in 0..D {
-            for lane in 0..LANES {
-                pull[k][lane] += (source.strength * w[lane]) * arrow[k][lane];
+            let mut pulls = [[0.0; BLOCK]; D];
+            for source in sources {
+                for i in 0..position.len() {
+                    let arrow: [f64; D] = std::array::from_fn(|k| source.position[k] - places[k][i]);
+                    squares[i] = arrow.iter().fold(softening_squared, |sum, x| sum + x * x);
+                    guesses[i] = guess(squares[i]);
+                }
+                for i in 0..position.len() {
+                    let pull = source.strength * inverse_cube_of_root(squares[i], guesses[i]);
+                    for k in 0..D {
+                        pulls[k][i] += pull * (source.position[k] - places[k][i]);
+                    }
+                }
             }
-        }
-    }
-    // A mass among the grains meets itself here: its lane is no number, and is not used.
-    for k in 0..D {
-        for lane in 0..LANES {
-            acceleration[lane][k] += if mass[lane] == 0.0 { pull[k][lane] } else { 0.0 };
+            // A mass among the grains has met itself: its pull is no number.
+            if mass.iter().fold(true, |all, &mass| all & (mass == 0.0)) {
+                for (i, a) in acceleration.iter_mut().enumerate() {
+                    *a += Vector::from_fn(|k| pulls[k][i]);
+                }
+            } else {
+                for (i, a) in acceleration.iter_mut().enumerate().filter(|(i, _)| mass[*i] == 0.0) {
+                    *a += Vector::from_fn(|k| pulls[k][i]);
+                }
+            }
         }
     }
 }
