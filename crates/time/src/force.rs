@@ -11,7 +11,7 @@ mod wca;
 
 pub use drag::Drag;
 pub use drive::DrivingForce;
-pub use gravity::Gravity;
+pub use gravity::{Gravity, TreeGravity};
 pub use lennard_jones::LennardJones;
 pub use pair::{PairForce, PairPotential};
 pub use spring::{Spring, Springs};

@@ -21,6 +21,8 @@
 
 // An axis or a lane indexes several arrays at once; zipped iterators of five arrays read worse.
 #![allow(clippy::needless_range_loop)]
+// Kernels must end up inside the function that is compiled for an instruction set.
+#![allow(clippy::inline_always)]
 
 mod constraint;
 mod engine;
@@ -35,7 +37,7 @@ mod system;
 pub use constraint::{Drive, Pin, Signal};
 pub use engine::TimeDriven;
 pub use force::{
-    Drag, DrivingForce, Force, Gravity, LennardJones, PairForce, PairPotential, Spring, Springs, UniformField,
+    Drag, DrivingForce, Force, Gravity, LennardJones, PairForce, PairPotential, Spring, Springs, TreeGravity, UniformField,
     WeeksChandlerAndersen,
 };
 pub use integrator::Integrator;

@@ -7,12 +7,14 @@ mod few;
 mod grains;
 mod lanes;
 mod scale;
+mod tree;
 
 use super::{Force, finite, not_negative};
 use crate::instructions::Instructions;
 use direct::Masses;
 use grains::attract_grains;
 use scale::Scale;
+pub use tree::TreeGravity;
 
 /// Up to so many particles the plain double loop is the fastest.
 const FEW: usize = 12;
@@ -108,17 +110,27 @@ impl<const D: usize> Force<D> for Gravity<D> {
     }
 
     fn validate(&self, boundary: &Boundary<D>, particles: &Particles<D>) -> Result<(), Invalid> {
-        finite("gravitational constant", self.constant)?;
-        not_negative("softening", self.softening)?;
-        if let Some(k) = boundary.axes.iter().position(|&axis| axis == Axis::Periodic) {
-            let expected = "open space or walls: gravity reaches through every periodic image";
-            return Err(Invalid::new(format!("axis {k} of the box"), "periodic", expected));
-        }
-        if particles.mass.iter().all(|&mass| mass == 0.0) {
-            return Err(Invalid::new("masses", "all zero", "at least one particle with mass, to attract the others"));
-        }
-        Ok(())
+        validate(self.constant, self.softening, boundary, particles)
     }
+}
+
+/// What direct sums and trees ask for.
+fn validate<const D: usize>(
+    constant: f64,
+    softening: f64,
+    boundary: &Boundary<D>,
+    particles: &Particles<D>,
+) -> Result<(), Invalid> {
+    finite("gravitational constant", constant)?;
+    not_negative("softening", softening)?;
+    if let Some(k) = boundary.axes.iter().position(|&axis| axis == Axis::Periodic) {
+        let expected = "open space or walls: gravity reaches through every periodic image";
+        return Err(Invalid::new(format!("axis {k} of the box"), "periodic", expected));
+    }
+    if particles.mass.iter().all(|&mass| mass == 0.0) {
+        return Err(Invalid::new("masses", "all zero", "at least one particle with mass, to attract the others"));
+    }
+    Ok(())
 }
 
 #[cfg(test)]

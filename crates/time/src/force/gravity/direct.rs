@@ -49,7 +49,7 @@ impl<const D: usize> Masses<D> {
         self.index.clear();
         for (chunk, masses) in particles.mass.chunks(LANES).enumerate() {
             // Among grains most chunks have no mass at all.
-            if masses.iter().fold(false, |any, &mass| any | (mass > 0.0)) {
+            if masses.iter().any(|&mass| mass > 0.0) {
                 let indices = (0..masses.len()).filter(|&lane| masses[lane] > 0.0);
                 self.index.extend(indices.map(|lane| chunk * LANES + lane));
             }
@@ -83,7 +83,7 @@ impl<const D: usize> Masses<D> {
     /// same place, and each sum is made in the order of the rounds, however many threads there are.
     pub(super) fn attract_each_other(&mut self, softening_squared: f64, precise: bool, instructions: Instructions) {
         let threads = self.index.len() >= WORTH_THREADS;
-        let alone = |block: &mut &mut Block<D>| {
+        let alone = |block: &mut Block<D>| {
             if precise {
                 instructions.run(Seclusion::<D, true> { block, softening_squared });
             } else {
@@ -98,13 +98,12 @@ impl<const D: usize> Masses<D> {
                 instructions.run(Meeting::<D, false> { first, second, softening_squared });
             }
         };
-        let mut teams: Vec<&mut Block<D>> = self.blocks.iter_mut().collect();
         if threads {
-            teams.par_iter_mut().for_each(alone)
+            self.blocks.par_iter_mut().for_each(alone);
         } else {
-            teams.iter_mut().for_each(alone)
+            self.blocks.iter_mut().for_each(alone);
         }
-        let mut teams: Vec<Option<&mut Block<D>>> = teams.into_iter().map(Some).collect();
+        let mut teams: Vec<Option<&mut Block<D>>> = self.blocks.iter_mut().map(Some).collect();
         if teams.len() % 2 == 1 {
             teams.push(None); // whoever meets nobody rests
         }

@@ -37,6 +37,15 @@ pub(super) fn inverse_cube_of_root(x: f64, guess: f32) -> f64 {
     (y * square) * (1.0 + e * (1.5 + 1.875 * e))
 }
 
+/// `x^(-1/2)` from the [`guess`] `y` for the same `x`, as [`inverse_cube_of_root`] does it:
+/// `y (1 - e)^(-1/2) = y (1 + e/2 + 3/8 e^2 + ...)`, relative error below `2 * 2^-53`.
+#[inline(always)]
+pub(super) fn inverse_root(x: f64, guess: f32) -> f64 {
+    let y = f64::from(guess);
+    let e = 1.0 - x * (y * y);
+    y * (1.0 + e * (0.5 + 0.375 * e))
+}
+
 /// The sum over lanes, by halves.
 #[inline(always)]
 pub(super) fn sum(x: &Lanes) -> f64 {
