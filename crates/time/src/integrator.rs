@@ -41,6 +41,17 @@ pub enum Integrator {
         /// Time step.
         dt: f64,
     },
+    /// Seven velocity Verlet steps of Yoshida's lengths (1990, solution A): order 6, symplectic, reversible, seven evaluations.
+    Yoshida6 {
+        /// Time step.
+        dt: f64,
+    },
+    /// Fifteen velocity Verlet steps (Suzuki and Umeno 1993, doi:10.1007/978-3-642-78448-4_7): order 8, symplectic, reversible,
+    /// fifteen evaluations.
+    Yoshida8 {
+        /// Time step.
+        dt: f64,
+    },
     /// Gauss-Radau collocation of order 15 that chooses its step (Everhart 1985, doi:10.1007/978-94-009-5400-7_17;
     /// Rein and Spiegel 2015, doi:10.1093/mnras/stu2164). Needs smooth forces: hard walls are refused.
     GaussRadau15 {
@@ -53,8 +64,16 @@ pub enum Integrator {
 
 impl Integrator {
     /// Names of all integrators.
-    pub const NAMES: [&'static str; 6] =
-        ["explicit-euler", "symplectic-euler", "velocity-verlet", "runge-kutta-4", "yoshida-4", "gauss-radau-15"];
+    pub const NAMES: [&'static str; 8] = [
+        "explicit-euler",
+        "symplectic-euler",
+        "velocity-verlet",
+        "runge-kutta-4",
+        "yoshida-4",
+        "gauss-radau-15",
+        "yoshida-6",
+        "yoshida-8",
+    ];
 
     /// The integrator of that name. The adaptive one takes `dt` as the first step to try, and tolerance `1e-9`.
     ///
@@ -67,6 +86,8 @@ impl Integrator {
             "velocity-verlet" => Self::VelocityVerlet { dt },
             "runge-kutta-4" => Self::RungeKutta4 { dt },
             "yoshida-4" => Self::Yoshida4 { dt },
+            "yoshida-6" => Self::Yoshida6 { dt },
+            "yoshida-8" => Self::Yoshida8 { dt },
             "gauss-radau-15" => Self::GaussRadau15 { tolerance: 1e-9, first_step: Some(dt) },
             _ => return Err(Invalid::new("integrator", name, format!("one of {}", Self::NAMES.join(", ")))),
         };
@@ -83,6 +104,8 @@ impl Integrator {
             Self::RungeKutta4 { .. } => Self::NAMES[3],
             Self::Yoshida4 { .. } => Self::NAMES[4],
             Self::GaussRadau15 { .. } => Self::NAMES[5],
+            Self::Yoshida6 { .. } => Self::NAMES[6],
+            Self::Yoshida8 { .. } => Self::NAMES[7],
         }
     }
 
@@ -92,13 +115,22 @@ impl Integrator {
             Self::ExplicitEuler { .. } | Self::SymplecticEuler { .. } => 1,
             Self::VelocityVerlet { .. } => 2,
             Self::RungeKutta4 { .. } | Self::Yoshida4 { .. } => 4,
+            Self::Yoshida6 { .. } => 6,
+            Self::Yoshida8 { .. } => 8,
             Self::GaussRadau15 { .. } => 15,
         }
     }
 
     /// Whether the flow keeps phase-space volume and, with it, energy within bounds.
     pub fn is_symplectic(&self) -> bool {
-        matches!(self, Self::SymplecticEuler { .. } | Self::VelocityVerlet { .. } | Self::Yoshida4 { .. })
+        matches!(
+            self,
+            Self::SymplecticEuler { .. }
+                | Self::VelocityVerlet { .. }
+                | Self::Yoshida4 { .. }
+                | Self::Yoshida6 { .. }
+                | Self::Yoshida8 { .. }
+        )
     }
 
     /// Length of the step, where it is fixed.
@@ -108,7 +140,9 @@ impl Integrator {
             | Self::SymplecticEuler { dt }
             | Self::VelocityVerlet { dt }
             | Self::RungeKutta4 { dt }
-            | Self::Yoshida4 { dt } => Some(dt),
+            | Self::Yoshida4 { dt }
+            | Self::Yoshida6 { dt }
+            | Self::Yoshida8 { dt } => Some(dt),
             Self::GaussRadau15 { .. } => None,
         }
     }
@@ -133,6 +167,8 @@ impl Integrator {
             Self::SymplecticEuler { .. } => Stepper::Composition(composition::SYMPLECTIC_EULER),
             Self::VelocityVerlet { .. } => Stepper::Composition(&composition::VELOCITY_VERLET),
             Self::Yoshida4 { .. } => Stepper::Composition(&composition::YOSHIDA_4),
+            Self::Yoshida6 { .. } => Stepper::Composition(&composition::YOSHIDA_6),
+            Self::Yoshida8 { .. } => Stepper::Composition(&composition::YOSHIDA_8),
             Self::GaussRadau15 { tolerance, first_step } => Stepper::GaussRadau(Box::new(GaussRadau::new(tolerance, first_step))),
         }
     }

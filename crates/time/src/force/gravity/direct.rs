@@ -26,12 +26,19 @@ type Column = [f64; BLOCK];
 struct Block<const D: usize> {
     /// Groups of lanes in use.
     groups: usize,
-    position: [Column; D],
-    /// What rounding took from the positions.
-    remainder: [Column; D],
+    places: Places<D>,
     /// `G m`.
     strength: Column,
     acceleration: [Column; D],
+}
+
+/// Positions to twice the precision.
+#[derive(Clone, Debug)]
+#[repr(align(64))]
+struct Places<const D: usize> {
+    position: [Column; D],
+    /// What rounding took from the positions.
+    remainder: [Column; D],
 }
 
 /// The masses of a system, and how they attract each other.
@@ -57,8 +64,7 @@ impl<const D: usize> Masses<D> {
         self.size = (self.index.len().div_ceil(LEAST_BLOCKS * LANES) * LANES).clamp(LANES, BLOCK);
         let empty = || Block {
             groups: 0,
-            position: [[0.0; BLOCK]; D],
-            remainder: [[0.0; BLOCK]; D],
+            places: Places { position: [[0.0; BLOCK]; D], remainder: [[0.0; BLOCK]; D] },
             strength: [0.0; BLOCK],
             acceleration: [[0.0; BLOCK]; D],
         };
@@ -69,8 +75,8 @@ impl<const D: usize> Masses<D> {
                 let i = indices.get(place);
                 block.strength[place] = i.map_or(0.0, |&i| constant * particles.mass[i]);
                 for k in 0..D {
-                    block.position[k][place] = i.map_or(Scale::OUTSIDE, |&i| particles.position[i][k] * scale.length);
-                    block.remainder[k][place] = i.and_then(|&i| remainder.get(i)).map_or(0.0, |r| r[k] * scale.length);
+                    block.places.position[k][place] = i.map_or(Scale::OUTSIDE, |&i| particles.position[i][k] * scale.length);
+                    block.places.remainder[k][place] = i.and_then(|&i| remainder.get(i)).map_or(0.0, |r| r[k] * scale.length);
                     block.acceleration[k][place] = 0.0;
                 }
             }
@@ -144,14 +150,14 @@ impl<const D: usize, const PRECISE: bool> Kernel for Meeting<'_, D, PRECISE> {
     fn run(self) {
         let Self { first, second, softening_squared } = self;
         let count = (second.groups * LANES).min(BLOCK);
-        let Block { position, remainder, strength, acceleration, .. } = second;
+        let Block { places, strength, acceleration, .. } = second;
         let (mut weights, mut guesses) = ([[0.0; BLOCK]; ROWS], [[0.0; BLOCK]; ROWS]);
         for rows in 0..first.groups * LANES / ROWS {
             let rows: [Row<D>; ROWS] = std::array::from_fn(|r| first.row(rows * ROWS + r));
-            measure::<D, PRECISE>(&rows, softening_squared, count, position, remainder, &mut weights, &mut guesses);
-            give::<D, PRECISE>(&rows, count, position, remainder, strength, &guesses, &mut weights, acceleration);
+            measure::<D, PRECISE>(&rows, softening_squared, count, places, &mut weights, &mut guesses);
+            give::<D, PRECISE>(&rows, count, places, strength, &guesses, &mut weights, acceleration);
             for (row, weights) in rows.iter().zip(&weights) {
-                let taken = take::<D, PRECISE>(row, count, position, remainder, weights);
+                let taken = take::<D, PRECISE>(row, count, places, weights);
                 for k in 0..D {
                     first.acceleration[k][row.place] += taken[k];
                 }
@@ -176,14 +182,14 @@ impl<const D: usize, const PRECISE: bool> Kernel for Seclusion<'_, D, PRECISE> {
         let (mut weights, mut guesses) = ([[0.0; BLOCK]; ROWS], [[0.0; BLOCK]; ROWS]);
         for rows in 0..count / ROWS {
             let rows: [Row<D>; ROWS] = std::array::from_fn(|r| block.row(rows * ROWS + r));
-            let Block { position, remainder, strength, acceleration, .. } = &mut *block;
-            measure::<D, PRECISE>(&rows, softening_squared, count, position, remainder, &mut weights, &mut guesses);
+            let Block { places, strength, acceleration, .. } = &mut *block;
+            measure::<D, PRECISE>(&rows, softening_squared, count, places, &mut weights, &mut guesses);
             for ((row, weights), guesses) in rows.iter().zip(&mut weights).zip(&guesses) {
                 for place in 0..count {
                     weights[place] = strength[place] * inverse_cube_of_root(weights[place], guesses[place]);
                 }
                 weights[row.place] = 0.0; // itself
-                let taken = take::<D, PRECISE>(row, count, position, remainder, weights);
+                let taken = take::<D, PRECISE>(row, count, places, weights);
                 for k in 0..D {
                     acceleration[k][row.place] += taken[k];
                 }
@@ -204,9 +210,9 @@ struct Row<const D: usize> {
 impl<const D: usize> Row<D> {
     /// Component `k` of the arrow to a mass of another block.
     #[inline(always)]
-    fn arrow<const PRECISE: bool>(&self, k: usize, place: usize, position: &[Column; D], remainder: &[Column; D]) -> f64 {
-        let x = position[k][place] - self.position[k];
-        if PRECISE { x + (remainder[k][place] - self.remainder[k]) } else { x }
+    fn arrow<const PRECISE: bool>(&self, k: usize, place: usize, places: &Places<D>) -> f64 {
+        let x = places.position[k][place] - self.position[k];
+        if PRECISE { x + (places.remainder[k][place] - self.remainder[k]) } else { x }
     }
 }
 
@@ -216,8 +222,7 @@ fn measure<const D: usize, const PRECISE: bool>(
     rows: &[Row<D>; ROWS],
     softening_squared: f64,
     count: usize,
-    position: &[Column; D],
-    remainder: &[Column; D],
+    places: &Places<D>,
     squares: &mut [Column; ROWS],
     guesses: &mut [[f32; BLOCK]; ROWS],
 ) {
@@ -225,7 +230,7 @@ fn measure<const D: usize, const PRECISE: bool>(
         for r in 0..ROWS {
             let mut square = softening_squared;
             for k in 0..D {
-                let x = rows[r].arrow::<PRECISE>(k, place, position, remainder);
+                let x = rows[r].arrow::<PRECISE>(k, place, places);
                 square += x * x;
             }
             squares[r][place] = square;
@@ -239,8 +244,7 @@ fn measure<const D: usize, const PRECISE: bool>(
 fn give<const D: usize, const PRECISE: bool>(
     rows: &[Row<D>; ROWS],
     count: usize,
-    position: &[Column; D],
-    remainder: &[Column; D],
+    places: &Places<D>,
     strength: &Column,
     guesses: &[[f32; BLOCK]; ROWS],
     weights: &mut [Column; ROWS],
@@ -253,7 +257,7 @@ fn give<const D: usize, const PRECISE: bool>(
             weights[r][place] = strength[place] * w;
             let give = rows[r].strength * w;
             for k in 0..D {
-                given[k] += give * rows[r].arrow::<PRECISE>(k, place, position, remainder);
+                given[k] += give * rows[r].arrow::<PRECISE>(k, place, places);
             }
         }
         for k in 0..D {
@@ -264,17 +268,11 @@ fn give<const D: usize, const PRECISE: bool>(
 
 /// What a row gets from the masses of the block, lane by lane.
 #[inline(always)]
-fn take<const D: usize, const PRECISE: bool>(
-    row: &Row<D>,
-    count: usize,
-    position: &[Column; D],
-    remainder: &[Column; D],
-    weights: &Column,
-) -> [f64; D] {
+fn take<const D: usize, const PRECISE: bool>(row: &Row<D>, count: usize, places: &Places<D>, weights: &Column) -> [f64; D] {
     let (weights, _) = weights[..count].as_chunks::<LANES>();
     std::array::from_fn(|k| {
-        let (position, _) = position[k][..count].as_chunks::<LANES>();
-        let (remainder, _) = remainder[k][..count].as_chunks::<LANES>();
+        let (position, _) = places.position[k][..count].as_chunks::<LANES>();
+        let (remainder, _) = places.remainder[k][..count].as_chunks::<LANES>();
         let mut taken = [0.0; LANES];
         for ((weight, x), lost) in weights.iter().zip(position).zip(remainder) {
             for lane in 0..LANES {
@@ -293,8 +291,8 @@ impl<const D: usize> Block<D> {
     fn row(&self, place: usize) -> Row<D> {
         Row {
             place,
-            position: std::array::from_fn(|k| self.position[k][place]),
-            remainder: std::array::from_fn(|k| self.remainder[k][place]),
+            position: std::array::from_fn(|k| self.places.position[k][place]),
+            remainder: std::array::from_fn(|k| self.places.remainder[k][place]),
             strength: self.strength[place],
         }
     }
