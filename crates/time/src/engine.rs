@@ -200,7 +200,7 @@ impl<const D: usize> TimeDriven<D> {
     fn restart(&mut self) -> Result<(), Invalid> {
         self.system.fresh = false;
         self.system.hold(self.time);
-        if let Stepper::GaussRadau(method) = &mut self.stepper {
+        if let Stepper::Adaptive(method) = &mut self.stepper {
             if self.system.boundary.axes.contains(&Axis::Walls) {
                 return Err(Invalid::new(
                     "integrator",
@@ -282,7 +282,7 @@ impl<const D: usize> Engine<D> for TimeDriven<D> {
     }
 
     fn advance<O: Observer<D>>(&mut self, to: f64, observer: &mut O) -> Result<(), Failure> {
-        let Stepper::GaussRadau(method) = &mut self.stepper else {
+        let Stepper::Adaptive(method) = &mut self.stepper else {
             let dt = self.integrator.dt().unwrap_or(f64::INFINITY);
             return self.advance_fixed(dt, to, observer);
         };

@@ -1,6 +1,8 @@
 //! How time passes: the integrators, by name.
 
 mod composition;
+mod dormand_prince;
+mod dormand_prince_table;
 mod gauss_radau;
 mod gauss_radau_table;
 mod runge_kutta;
@@ -9,7 +11,8 @@ use corpuscle_core::{Failure, Invalid};
 
 use crate::system::System;
 use composition::Composition;
-pub(crate) use gauss_radau::GaussRadau;
+use dormand_prince::DormandPrince;
+use gauss_radau::GaussRadau;
 use runge_kutta::RungeKutta;
 
 /// A rule for advancing positions and velocities.
@@ -60,11 +63,20 @@ pub enum Integrator {
         /// Length of the first step tried; chosen from the accelerations when absent.
         first_step: Option<f64>,
     },
+    /// Dormand and Prince's Runge-Kutta method of order 8 that chooses its step by errors of order 5 and 3, with dense output
+    /// of order 7 (Hairer, Norsett and Wanner 1993, doi:10.1007/978-3-540-78862-1). Needs smooth forces, not very precise
+    /// ones: hard walls are refused.
+    DormandPrince8 {
+        /// The error that a step may make, as a share of the largest distance from the origin and of the largest speed.
+        tolerance: f64,
+        /// Length of the first step tried; chosen from the accelerations when absent.
+        first_step: Option<f64>,
+    },
 }
 
 impl Integrator {
     /// Names of all integrators.
-    pub const NAMES: [&'static str; 8] = [
+    pub const NAMES: [&'static str; 9] = [
         "explicit-euler",
         "symplectic-euler",
         "velocity-verlet",
@@ -73,9 +85,11 @@ impl Integrator {
         "gauss-radau-15",
         "yoshida-6",
         "yoshida-8",
+        "dormand-prince-8",
     ];
 
-    /// The integrator of that name. The adaptive one takes `dt` as the first step to try, and tolerance `1e-9`.
+    /// The integrator of that name. The adaptive ones take `dt` as the first step to try, and tolerance
+    /// `1e-9` (Gauss-Radau) or `1e-12` (Dormand-Prince).
     ///
     /// # Errors
     /// When there is no such name, or the step is not a positive number.
@@ -88,6 +102,7 @@ impl Integrator {
             "yoshida-4" => Self::Yoshida4 { dt },
             "yoshida-6" => Self::Yoshida6 { dt },
             "yoshida-8" => Self::Yoshida8 { dt },
+            "dormand-prince-8" => Self::DormandPrince8 { tolerance: 1e-12, first_step: Some(dt) },
             "gauss-radau-15" => Self::GaussRadau15 { tolerance: 1e-9, first_step: Some(dt) },
             _ => return Err(Invalid::new("integrator", name, format!("one of {}", Self::NAMES.join(", ")))),
         };
@@ -106,6 +121,7 @@ impl Integrator {
             Self::GaussRadau15 { .. } => Self::NAMES[5],
             Self::Yoshida6 { .. } => Self::NAMES[6],
             Self::Yoshida8 { .. } => Self::NAMES[7],
+            Self::DormandPrince8 { .. } => Self::NAMES[8],
         }
     }
 
@@ -116,7 +132,7 @@ impl Integrator {
             Self::VelocityVerlet { .. } => 2,
             Self::RungeKutta4 { .. } | Self::Yoshida4 { .. } => 4,
             Self::Yoshida6 { .. } => 6,
-            Self::Yoshida8 { .. } => 8,
+            Self::Yoshida8 { .. } | Self::DormandPrince8 { .. } => 8,
             Self::GaussRadau15 { .. } => 15,
         }
     }
@@ -143,7 +159,7 @@ impl Integrator {
             | Self::Yoshida4 { dt }
             | Self::Yoshida6 { dt }
             | Self::Yoshida8 { dt } => Some(dt),
-            Self::GaussRadau15 { .. } => None,
+            Self::GaussRadau15 { .. } | Self::DormandPrince8 { .. } => None,
         }
     }
 
@@ -152,7 +168,7 @@ impl Integrator {
             if value.is_finite() && value > 0.0 { Ok(()) } else { Err(Invalid::new(key, value, "a positive number")) }
         };
         match *self {
-            Self::GaussRadau15 { tolerance, first_step } => {
+            Self::GaussRadau15 { tolerance, first_step } | Self::DormandPrince8 { tolerance, first_step } => {
                 positive("tolerance", tolerance)?;
                 first_step.map_or(Ok(()), |step| positive("first step", step))
             }
@@ -169,16 +185,43 @@ impl Integrator {
             Self::Yoshida4 { .. } => Stepper::Composition(&composition::YOSHIDA_4),
             Self::Yoshida6 { .. } => Stepper::Composition(&composition::YOSHIDA_6),
             Self::Yoshida8 { .. } => Stepper::Composition(&composition::YOSHIDA_8),
-            Self::GaussRadau15 { tolerance, first_step } => Stepper::GaussRadau(Box::new(GaussRadau::new(tolerance, first_step))),
+            Self::GaussRadau15 { tolerance, first_step } => Stepper::Adaptive(Box::new(GaussRadau::new(tolerance, first_step))),
+            Self::DormandPrince8 { tolerance, first_step } => {
+                Stepper::Adaptive(Box::new(DormandPrince::new(tolerance, first_step)))
+            }
         }
     }
+}
+
+/// An integrator that chooses its steps and knows the trajectory between them.
+pub(crate) trait Adaptive<const D: usize>: Send {
+    /// Time up to which the trajectory is known.
+    fn reached(&self) -> f64;
+
+    /// Forgets the past: the next step starts from the system as it is at `time`.
+    fn restart(&mut self, system: &mut System<D>, time: f64);
+
+    /// Takes one step, of a length it chooses. The system's particles are left somewhere within it.
+    fn step(&mut self, system: &mut System<D>) -> Result<(), Failure>;
+
+    /// Writes the state at `time`, which lies within the last step, into the system's particles.
+    fn interpolate(&mut self, system: &mut System<D>, time: f64);
+}
+
+/// A step that would have to be so short that time stands still.
+fn too_close(time: f64, particle: Option<usize>, dt: f64) -> Failure {
+    let cause = format!(
+        "the step needed, {dt:.1e}, is below the resolution of time: particles come too close; \
+         soften the force or start a little differently"
+    );
+    Failure { time, particle, cause }
 }
 
 /// An integrator with its working memory.
 pub(crate) enum Stepper<const D: usize> {
     Composition(&'static Composition),
     RungeKutta(RungeKutta<D>),
-    GaussRadau(Box<GaussRadau<D>>),
+    Adaptive(Box<dyn Adaptive<D>>),
 }
 
 impl<const D: usize> Stepper<D> {
@@ -187,7 +230,7 @@ impl<const D: usize> Stepper<D> {
         match self {
             Self::Composition(stages) => composition::step(stages, system, start, end, dt),
             Self::RungeKutta(method) => method.step(system, start, end, dt),
-            Self::GaussRadau(_) => Ok(()), // chooses its own steps: see `TimeDriven::advance`
+            Self::Adaptive(_) => Ok(()), // chooses its own steps: see `TimeDriven::advance`
         }
     }
 }

@@ -87,7 +87,7 @@ fn symplectic_integrators_keep_energy_bounded() {
         let Particles { position, velocity, .. } = engine.particles();
         0.5 * (velocity[1] - velocity[0]).norm_squared() - 1.0 / (position[1] - position[0]).norm()
     };
-    for name in Integrator::NAMES.iter().filter(|name| **name != "gauss-radau-15") {
+    for name in Integrator::NAMES.iter().filter(|name| Integrator::from_name(name, dt).unwrap().dt().is_some()) {
         let integrator = Integrator::from_name(name, dt).unwrap();
         let mut engine = planet(integrator);
         let mut stretch = |from: u32, to: u32| {
