@@ -62,6 +62,11 @@ pub trait Force<const D: usize>: Send {
         false
     }
 
+    /// The constant `G` of a force that is Newton's between points, and nothing else; only then are two bodies on Kepler orbits.
+    fn point_gravity(&self) -> Option<f64> {
+        None
+    }
+
     /// The longest step of an adaptive integrator that cannot miss what the force does by itself as time passes.
     fn longest_step(&self) -> f64 {
         f64::INFINITY

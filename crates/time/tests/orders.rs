@@ -6,6 +6,8 @@ use corpuscle_core::{Axis, Boundary, Engine, Particles, Vector};
 use corpuscle_time::{Drag, Force, Gravity, Integrator, Spring, Springs, TimeDriven};
 
 const ECCENTRICITY: f64 = 0.3;
+/// Leaves no error to measure with one planet: see `planets.rs`.
+const EXACT_FOR_TWO: [&str; 1] = ["wisdom-holman"];
 
 /// A massless planet around a unit mass, starting at perihelion; semi-axis 1, period `2 pi`.
 fn planet(integrator: Integrator) -> TimeDriven<2> {
@@ -87,7 +89,10 @@ fn symplectic_integrators_keep_energy_bounded() {
         let Particles { position, velocity, .. } = engine.particles();
         0.5 * (velocity[1] - velocity[0]).norm_squared() - 1.0 / (position[1] - position[0]).norm()
     };
-    for name in Integrator::NAMES.iter().filter(|name| Integrator::from_name(name, dt).unwrap().dt().is_some()) {
+    for name in Integrator::NAMES
+        .iter()
+        .filter(|name| !EXACT_FOR_TWO.contains(name) && Integrator::from_name(name, dt).unwrap().dt().is_some())
+    {
         let integrator = Integrator::from_name(name, dt).unwrap();
         let mut engine = planet(integrator);
         let mut stretch = |from: u32, to: u32| {

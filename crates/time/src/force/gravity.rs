@@ -112,6 +112,10 @@ impl<const D: usize> Force<D> for Gravity<D> {
     fn validate(&self, boundary: &Boundary<D>, particles: &Particles<D>) -> Result<(), Invalid> {
         validate(self.constant, self.softening, boundary, particles)
     }
+
+    fn point_gravity(&self) -> Option<f64> {
+        (self.softening == 0.0).then_some(self.constant)
+    }
 }
 
 /// What direct sums and trees ask for.
