@@ -41,6 +41,7 @@ pub(super) fn kepler<const D: usize>(mu: f64, r: Vector<D>, v: Vector<D>, dt: f6
         }
     }
     let mut s = (dt / distance).clamp(low, high);
+    let mut change = high - low;
     for _ in 0..MOST_ROUNDS {
         let (_, time, now) = functions(s);
         if time < dt {
@@ -49,8 +50,10 @@ pub(super) fn kepler<const D: usize>(mu: f64, r: Vector<D>, v: Vector<D>, dt: f6
             high = s;
         }
         let newton = s - (time - dt) / now;
-        let next = if low <= newton && newton <= high { newton } else { 0.5 * (low + high) };
-        let change = (next - s).abs();
+        // Newton's steps shrink in the end; where they do not yet, halving the bracket is faster.
+        let shrinks = low <= newton && newton <= high && (newton - s).abs() <= 0.5 * change;
+        let next = if shrinks { newton } else { 0.5 * (low + high) };
+        change = (next - s).abs();
         s = next;
         if change <= 2.0 * f64::EPSILON * s {
             break;
