@@ -113,7 +113,11 @@ mod tests {
                 let (r2, v2) = kepler(mu, r, v, dt).unwrap();
                 let energy = |r: Vector<2>, v: Vector<2>| 0.5 * v.norm_squared() - mu / r.norm();
                 let size = 0.5 * v2.norm_squared() + mu / r2.norm() + 0.5;
-                assert!((energy(r2, v2) - energy(r, v)).abs() < 100.0 * f64::EPSILON * size, "e = {e}, dt = {dt}: {:e} of {size}", energy(r2, v2) - energy(r, v));
+                assert!(
+                    (energy(r2, v2) - energy(r, v)).abs() < 100.0 * f64::EPSILON * size,
+                    "e = {e}, dt = {dt}: {:e} of {size}",
+                    energy(r2, v2) - energy(r, v)
+                );
                 let (r3, v3) = kepler(mu, r2, v2, -dt).unwrap();
                 // A rounding of the velocity shifts the place by as much times the time; near the centre it counts more.
                 let bound = 100.0 * f64::EPSILON * (1.0 + dt) * (1.0 + r2.norm()) / (1.0 - e).abs().clamp(1e-3, 1.0).powi(2);
