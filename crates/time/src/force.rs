@@ -1,5 +1,6 @@
 //! Forces, one file each.
 
+mod central;
 mod drag;
 mod drive;
 mod gravity;
@@ -9,6 +10,7 @@ mod spring;
 mod uniform;
 mod wca;
 
+pub use central::CentralField;
 pub use drag::Drag;
 pub use drive::DrivingForce;
 pub use gravity::{Gravity, TreeGravity};
@@ -79,12 +81,12 @@ fn finite(key: &str, value: f64) -> Result<(), Invalid> {
 }
 
 /// A parameter that must be positive.
-fn positive(key: &str, value: f64) -> Result<(), Invalid> {
+pub(crate) fn positive(key: &str, value: f64) -> Result<(), Invalid> {
     if value.is_finite() && value > 0.0 { Ok(()) } else { Err(Invalid::new(key, value, "a positive number")) }
 }
 
 /// A parameter that must not be negative.
-fn not_negative(key: &str, value: f64) -> Result<(), Invalid> {
+pub(crate) fn not_negative(key: &str, value: f64) -> Result<(), Invalid> {
     if value.is_finite() && value >= 0.0 { Ok(()) } else { Err(Invalid::new(key, value, "a number, zero or more")) }
 }
 

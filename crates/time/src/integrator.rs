@@ -7,15 +7,18 @@ mod gauss_radau;
 mod gauss_radau_table;
 mod kepler;
 mod runge_kutta;
+mod thermal;
 mod wisdom_holman;
 
 use corpuscle_core::{Axis, Failure, Invalid};
 
+use crate::force::{not_negative, positive};
 use crate::system::System;
 use composition::Composition;
 use dormand_prince::DormandPrince;
 use gauss_radau::GaussRadau;
 use runge_kutta::RungeKutta;
+use thermal::Bath;
 use wisdom_holman::WisdomHolman;
 
 /// A rule for advancing positions and velocities.
@@ -73,6 +76,45 @@ pub enum Integrator {
         /// Time step.
         dt: f64,
     },
+    /// Langevin's equation `m dv = (F - m gamma v) dt + sqrt(2 m gamma k T) dW` by the splitting BAOAB (Leimkuhler and Matthews
+    /// 2013, doi:10.1063/1.4802990): canonical, order 2 in averages, one evaluation a step. Without friction, velocity Verlet.
+    Langevin {
+        /// Time step.
+        dt: f64,
+        /// Temperature `k T`.
+        temperature: f64,
+        /// Friction `gamma`, a rate.
+        friction: f64,
+        /// Seed of the noise.
+        seed: u64,
+    },
+    /// Brownian motion `dr = F/(m gamma) dt + sqrt(2 k T/(m gamma)) dW`, the limit of strong friction, by the rule of
+    /// Leimkuhler and Matthews (2013, doi:10.1093/amrx/abs010): order 2 in averages over configurations. Velocities are the mean
+    /// drift `F/(m gamma)`, not thermal.
+    Brownian {
+        /// Time step.
+        dt: f64,
+        /// Temperature `k T`.
+        temperature: f64,
+        /// Friction `gamma`, a rate.
+        friction: f64,
+        /// Seed of the noise.
+        seed: u64,
+    },
+    /// Velocity Verlet with all velocities rescaled after each step, so that the kinetic energy follows its canonical
+    /// distribution (Bussi, Donadio and Parrinello 2007, doi:10.1063/1.2408420): hardly disturbs the dynamics.
+    StochasticRescaling {
+        /// Time step.
+        dt: f64,
+        /// Temperature `k T`.
+        temperature: f64,
+        /// Time in which the kinetic energy forgets where it was.
+        relaxation_time: f64,
+        /// Velocities that move freely: `D N`, or `D (N - 1)` where the total momentum is conserved and zero.
+        degrees_of_freedom: u32,
+        /// Seed of the noise.
+        seed: u64,
+    },
     /// Dormand and Prince's Runge-Kutta method of order 8 that chooses its step by errors of order 5 and 3, with dense output
     /// of order 7 (Hairer, Norsett and Wanner 1993, doi:10.1007/978-3-540-78862-1). Needs smooth forces, not very precise
     /// ones: hard walls are refused.
@@ -85,7 +127,7 @@ pub enum Integrator {
 }
 
 impl Integrator {
-    /// Names of all integrators.
+    /// Names of the integrators that need no more than a step; thermostats need a temperature as well.
     pub const NAMES: [&'static str; 10] = [
         "explicit-euler",
         "symplectic-euler",
@@ -122,7 +164,7 @@ impl Integrator {
         Ok(integrator)
     }
 
-    /// Name, as [`from_name`](Self::from_name) takes it.
+    /// Name; those of [`NAMES`](Self::NAMES) are what [`from_name`](Self::from_name) takes.
     pub fn name(&self) -> &'static str {
         match self {
             Self::ExplicitEuler { .. } => Self::NAMES[0],
@@ -135,14 +177,21 @@ impl Integrator {
             Self::Yoshida8 { .. } => Self::NAMES[7],
             Self::DormandPrince8 { .. } => Self::NAMES[8],
             Self::WisdomHolman { .. } => Self::NAMES[9],
+            Self::Langevin { .. } => "langevin",
+            Self::Brownian { .. } => "brownian",
+            Self::StochasticRescaling { .. } => "stochastic-rescaling",
         }
     }
 
-    /// Order `p`: the error at a fixed time is proportional to `dt^p`.
+    /// Order `p`: the error at a fixed time is proportional to `dt^p`; for a thermostat, that of averages.
     pub fn order(&self) -> u32 {
         match self {
             Self::ExplicitEuler { .. } | Self::SymplecticEuler { .. } => 1,
-            Self::VelocityVerlet { .. } | Self::WisdomHolman { .. } => 2,
+            Self::VelocityVerlet { .. }
+            | Self::WisdomHolman { .. }
+            | Self::Langevin { .. }
+            | Self::Brownian { .. }
+            | Self::StochasticRescaling { .. } => 2,
             Self::RungeKutta4 { .. } | Self::Yoshida4 { .. } => 4,
             Self::Yoshida6 { .. } => 6,
             Self::Yoshida8 { .. } | Self::DormandPrince8 { .. } => 8,
@@ -173,19 +222,35 @@ impl Integrator {
             | Self::Yoshida4 { dt }
             | Self::Yoshida6 { dt }
             | Self::Yoshida8 { dt }
-            | Self::WisdomHolman { dt } => Some(dt),
+            | Self::WisdomHolman { dt }
+            | Self::Langevin { dt, .. }
+            | Self::Brownian { dt, .. }
+            | Self::StochasticRescaling { dt, .. } => Some(dt),
             Self::GaussRadau15 { .. } | Self::DormandPrince8 { .. } => None,
         }
     }
 
     pub(crate) fn validate(&self) -> Result<(), Invalid> {
-        let positive = |key: &str, value: f64| {
-            if value.is_finite() && value > 0.0 { Ok(()) } else { Err(Invalid::new(key, value, "a positive number")) }
-        };
         match *self {
             Self::GaussRadau15 { tolerance, first_step } | Self::DormandPrince8 { tolerance, first_step } => {
                 positive("tolerance", tolerance)?;
                 first_step.map_or(Ok(()), |step| positive("first step", step))
+            }
+            Self::Langevin { dt, temperature, friction, .. } => {
+                positive("dt", dt)?;
+                not_negative("temperature", temperature)?;
+                not_negative("friction", friction)
+            }
+            Self::Brownian { dt, temperature, friction, .. } => {
+                positive("dt", dt)?;
+                not_negative("temperature", temperature)?;
+                positive("friction", friction)
+            }
+            Self::StochasticRescaling { dt, temperature, relaxation_time, degrees_of_freedom, .. } => {
+                positive("dt", dt)?;
+                not_negative("temperature", temperature)?;
+                positive("relaxation time", relaxation_time)?;
+                positive("degrees of freedom", f64::from(degrees_of_freedom))
             }
             _ => self.dt().map_or(Ok(()), |dt| positive("dt", dt)),
         }
@@ -202,6 +267,11 @@ impl Integrator {
             Self::Yoshida8 { .. } => Stepper::Composition(&composition::YOSHIDA_8),
             Self::GaussRadau15 { tolerance, first_step } => Stepper::Adaptive(Box::new(GaussRadau::new(tolerance, first_step))),
             Self::WisdomHolman { .. } => Stepper::WisdomHolman(WisdomHolman::default()),
+            Self::Langevin { temperature, friction, seed, .. } => Stepper::Bath(Bath::Langevin { temperature, friction, seed }),
+            Self::Brownian { temperature, friction, seed, .. } => Stepper::Bath(Bath::Brownian { temperature, friction, seed }),
+            Self::StochasticRescaling { temperature, relaxation_time, degrees_of_freedom, seed, .. } => {
+                Stepper::Bath(Bath::Rescaling { temperature, relaxation_time, degrees_of_freedom, seed })
+            }
             Self::DormandPrince8 { tolerance, first_step } => {
                 Stepper::Adaptive(Box::new(DormandPrince::new(tolerance, first_step)))
             }
@@ -238,6 +308,7 @@ pub(crate) enum Stepper<const D: usize> {
     Composition(&'static Composition),
     RungeKutta(RungeKutta<D>),
     WisdomHolman(WisdomHolman<D>),
+    Bath(Bath),
     Adaptive(Box<dyn Adaptive<D>>),
 }
 
@@ -255,6 +326,7 @@ impl<const D: usize> Stepper<D> {
         match self {
             Self::Adaptive(method) => method.restart(system, time),
             Self::WisdomHolman(map) => map.admit(system)?,
+            Self::Bath(_) => Bath::admit(system)?,
             Self::Composition(_) | Self::RungeKutta(_) => {}
         }
         Ok(())
@@ -266,6 +338,7 @@ impl<const D: usize> Stepper<D> {
             Self::Composition(stages) => composition::step(stages, system, start, end, dt),
             Self::RungeKutta(method) => method.step(system, start, end, dt),
             Self::WisdomHolman(map) => map.step(system, start, end, dt),
+            Self::Bath(bath) => bath.step(system, start, end, dt),
             Self::Adaptive(_) => Ok(()), // chooses its own steps: see `TimeDriven::advance`
         }
     }

@@ -37,8 +37,8 @@ mod system;
 pub use constraint::{Drive, Pin, Signal};
 pub use engine::TimeDriven;
 pub use force::{
-    Drag, DrivingForce, Force, Gravity, LennardJones, PairForce, PairPotential, Spring, Springs, TreeGravity, UniformField,
-    WeeksChandlerAndersen,
+    CentralField, Drag, DrivingForce, Force, Gravity, LennardJones, PairForce, PairPotential, Spring, Springs, TreeGravity,
+    UniformField, WeeksChandlerAndersen,
 };
 pub use integrator::Integrator;
 pub use neighbours::Neighbours;

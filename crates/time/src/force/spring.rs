@@ -83,7 +83,7 @@ impl Spring {
 /// together: nothing has to be looked up for each of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Springs {
-    springs: Vec<Spring>,
+    given: Vec<Spring>,
     runs: Vec<Run>,
     instructions: Instructions,
 }
@@ -92,12 +92,12 @@ impl Springs {
     /// A network of springs.
     pub fn new(springs: Vec<Spring>) -> Self {
         let runs = Run::all(&springs);
-        Self { springs, runs, instructions: Instructions::detect() }
+        Self { given: springs, runs, instructions: Instructions::detect() }
     }
 
     /// The springs.
     pub fn springs(&self) -> &[Spring] {
-        &self.springs
+        &self.given
     }
 
     fn arrows<'a, const D: usize>(
@@ -106,7 +106,7 @@ impl Springs {
         particles: &'a Particles<D>,
     ) -> impl Iterator<Item = (&'a Spring, Vector<D>)> {
         let image = NearestImage::new(boundary);
-        self.springs
+        self.given
             .iter()
             .map(move |spring| (spring, image.displacement(particles.position[spring.first], particles.position[spring.second])))
     }
@@ -147,7 +147,7 @@ impl<const D: usize> Force<D> for Springs {
     }
 
     fn validate(&self, boundary: &Boundary<D>, particles: &Particles<D>) -> Result<(), Invalid> {
-        for (number, spring) in self.springs.iter().enumerate() {
+        for (number, spring) in self.given.iter().enumerate() {
             massive("a spring", spring.first, particles)?;
             massive("a spring", spring.second, particles)?;
             if spring.first == spring.second {
@@ -170,7 +170,7 @@ impl<const D: usize> Force<D> for Springs {
     }
 
     fn depends_on_velocity(&self) -> bool {
-        self.springs.iter().any(|spring| spring.damping != 0.0)
+        self.given.iter().any(|spring| spring.damping != 0.0)
     }
 }
 

@@ -30,6 +30,7 @@ const MIDDLE: f64 = -1.702_414_383_919_315_3;
 const LENGTHS_4: [f64; 3] = [OUTER, MIDDLE, OUTER];
 
 /// Yoshida's solution A of order 6 (1990, doi:10.1016/0375-9601(90)90092-3, table 1).
+#[allow(clippy::excessive_precision)] // digits to check against other tables
 const LENGTHS_6: [f64; 7] = symmetric([
     0.784_513_610_477_557_263_82,
     0.235_573_213_359_358_133_68,
@@ -39,6 +40,7 @@ const LENGTHS_6: [f64; 7] = symmetric([
 
 /// Order 8 in Yoshida's form of 15 steps; the solution with the smallest longest step (Suzuki and Umeno 1993,
 /// doi:10.1007/978-3-642-78448-4_7; Hairer, Lubich and Wanner 2006, doi:10.1007/3-540-30666-8, equation V.3.11).
+#[allow(clippy::excessive_precision)] // digits to check against other tables
 const LENGTHS_8: [f64; 15] = symmetric([
     0.741_670_364_350_612_953_448_227_80,
     -0.409_100_825_800_031_593_997_300_10,
