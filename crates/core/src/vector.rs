@@ -1,5 +1,6 @@
 //! A point or an arrow in `D` dimensions.
 
+use bytemuck::TransparentWrapper;
 use std::ops::{Add, AddAssign, Div, Index, IndexMut, Mul, Neg, Sub, SubAssign};
 
 /// A vector of `D` real components, with the arithmetic of a vector space and the Euclidean inner product.
@@ -12,7 +13,7 @@ use std::ops::{Add, AddAssign, Div, Index, IndexMut, Mul, Neg, Sub, SubAssign};
 /// assert_eq!(a.norm(), 5.0);
 /// assert_eq!(2.0 * a - a, a);
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::TransparentWrapper)]
 #[repr(transparent)]
 pub struct Vector<const D: usize>(pub [f64; D]);
 
@@ -38,6 +39,18 @@ impl<const D: usize> Vector<D> {
     #[inline]
     pub fn from_fn(f: impl FnMut(usize) -> f64) -> Self {
         Self(std::array::from_fn(f))
+    }
+
+    /// The components of many vectors as one array of numbers, vector by vector.
+    #[inline]
+    pub fn components(vectors: &[Self]) -> &[f64] {
+        Self::peel_slice(vectors).as_flattened()
+    }
+
+    /// [`components`](Self::components), to be changed.
+    #[inline]
+    pub fn components_mut(vectors: &mut [Self]) -> &mut [f64] {
+        Self::peel_slice_mut(vectors).as_flattened_mut()
     }
 
     /// Inner product, summed in the order of the axes.

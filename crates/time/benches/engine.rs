@@ -2,7 +2,8 @@
 
 use corpuscle_core::{Axis, Boundary, Engine, Particles, Random, Vector, placement};
 use corpuscle_time::{
-    Force, Gravity, Integrator, LennardJones, PairForce, PairPotential, Spring, Springs, TimeDriven, WeeksChandlerAndersen,
+    Force, Gravity, Integrator, LennardJones, PairForce, PairPotential, Spring, Springs, TimeDriven, TreeGravity,
+    WeeksChandlerAndersen,
 };
 use divan::Bencher;
 use divan::counter::ItemsCount;
@@ -29,17 +30,66 @@ fn ten_steps<const D: usize>(bencher: Bencher<'_, '_>, mut engine: TimeDriven<D>
     });
 }
 
-/// Direct sum over masses in leapfrog; counts unordered pairs.
-#[divan::bench(args = [1000, 4000])]
-fn gravity_pairs(bencher: Bencher<'_, '_>, count: usize) {
+/// Equal stars in a ball, of mass 1 together.
+fn cluster(count: usize) -> Particles<3> {
     let mut random = Random::new(1, 0);
-    let mut stars = Particles::<3>::new();
+    let mut stars = Particles::new();
     for _ in 0..count {
         stars.push(Vector::from_fn(|_| random.normal()), Vector::from_fn(|_| random.normal()), 1.0 / count as f64, 0.0, 0);
     }
+    stars
+}
+
+/// Direct sum over masses in leapfrog; counts unordered pairs.
+#[divan::bench(args = [1000, 4000])]
+fn gravity_pairs(bencher: Bencher<'_, '_>, count: usize) {
     let space = Boundary::new([-5.0; 3], [5.0; 3], Axis::Open);
-    let engine = engine(space, stars, Gravity::new(1.0, 0.01), Integrator::VelocityVerlet { dt: 1e-4 });
+    let engine = engine(space, cluster(count), Gravity::new(1.0, 0.01), Integrator::VelocityVerlet { dt: 1e-4 });
     ten_steps(bencher, engine, count * (count - 1) / 2);
+}
+
+/// Gravity by a tree, opening angle 0.5; counts particles.
+#[divan::bench(args = [10_000, 100_000])]
+fn gravity_tree(bencher: Bencher<'_, '_>, count: usize) {
+    let space = Boundary::new([-5.0; 3], [5.0; 3], Axis::Open);
+    let force = TreeGravity::new(1.0, 0.01, 0.5);
+    ten_steps(bencher, engine(space, cluster(count), force, Integrator::VelocityVerlet { dt: 1e-4 }), count);
+}
+
+/// A star and eight planets by the Wisdom-Holman map; counts planets.
+#[divan::bench]
+fn planets(bencher: Bencher<'_, '_>) {
+    let mut bodies = Particles::<3>::new();
+    bodies.push(Vector::ZERO, Vector::ZERO, 1.0, 0.0, 0);
+    for i in 0..8 {
+        let (axis, (sine, cosine)) = (1.5f64.powi(i), f64::from(i).sin_cos());
+        let speed = axis.sqrt().recip();
+        bodies.push(Vector([axis * cosine, axis * sine, 0.0]), Vector([-speed * sine, speed * cosine, 0.0]), 1e-5, 0.0, 1);
+    }
+    let space = Boundary::new([-50.0; 3], [50.0; 3], Axis::Open);
+    ten_steps(bencher, engine(space, bodies, Gravity::new(1.0, 0.0), Integrator::WisdomHolman { dt: 0.1 }), 8);
+}
+
+/// A chain in a heat bath, Langevin's; counts masses.
+#[divan::bench(args = [10_000])]
+fn heat_bath(bencher: Bencher<'_, '_>, count: usize) {
+    let bath = Integrator::Langevin { dt: 0.1, temperature: 1.0, friction: 1.0, seed: 1 };
+    ten_steps(bencher, chain(count, 0.0, bath), count);
+}
+
+/// A chain of springs that obey Hooke's law, stretched (rest length 0) or not (1); counts masses.
+#[divan::bench(args = [0.0, 1.0])]
+fn chain_of_a_million(bencher: Bencher<'_, '_>, rest_length: f64) {
+    ten_steps(bencher, chain(1_000_000, rest_length, Integrator::VelocityVerlet { dt: 0.1 }), 1_000_000);
+}
+
+fn chain(count: usize, rest_length: f64, integrator: Integrator) -> TimeDriven<3> {
+    let mut beads = Particles::<3>::new();
+    for i in 0..count {
+        beads.push(Vector([i as f64, (0.1 * i as f64).sin(), 0.0]), Vector::ZERO, 1.0, 0.0, 0);
+    }
+    let springs = (1..count).map(|i| Spring::new(i - 1, i, 1.0, rest_length)).collect();
+    engine(Boundary::new([0.0; 3], [count as f64; 3], Axis::Open), beads, Springs::new(springs), integrator)
 }
 
 /// Three stars and massless grains in leapfrog; counts particles.

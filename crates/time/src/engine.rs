@@ -200,16 +200,7 @@ impl<const D: usize> TimeDriven<D> {
     fn restart(&mut self) -> Result<(), Invalid> {
         self.system.fresh = false;
         self.system.hold(self.time);
-        if let Stepper::GaussRadau(method) = &mut self.stepper {
-            if self.system.boundary.axes.contains(&Axis::Walls) {
-                return Err(Invalid::new(
-                    "integrator",
-                    self.integrator.name(),
-                    "a fixed-step one where there are hard walls: a reflection is not smooth",
-                ));
-            }
-            method.restart(&mut self.system, self.time);
-        }
+        self.stepper.restart(&mut self.system, self.time, self.integrator.name())?;
         self.keep();
         Ok(())
     }
@@ -282,7 +273,7 @@ impl<const D: usize> Engine<D> for TimeDriven<D> {
     }
 
     fn advance<O: Observer<D>>(&mut self, to: f64, observer: &mut O) -> Result<(), Failure> {
-        let Stepper::GaussRadau(method) = &mut self.stepper else {
+        let Stepper::Adaptive(method) = &mut self.stepper else {
             let dt = self.integrator.dt().unwrap_or(f64::INFINITY);
             return self.advance_fixed(dt, to, observer);
         };

@@ -1,5 +1,6 @@
 //! Forces, one file each.
 
+mod central;
 mod drag;
 mod drive;
 mod gravity;
@@ -9,9 +10,10 @@ mod spring;
 mod uniform;
 mod wca;
 
+pub use central::CentralField;
 pub use drag::Drag;
 pub use drive::DrivingForce;
-pub use gravity::Gravity;
+pub use gravity::{Gravity, TreeGravity};
 pub use lennard_jones::LennardJones;
 pub use pair::{PairForce, PairPotential};
 pub use spring::{Spring, Springs};
@@ -62,6 +64,11 @@ pub trait Force<const D: usize>: Send {
         false
     }
 
+    /// The constant `G` of a force that is Newton's between points, and nothing else; only then are two bodies on Kepler orbits.
+    fn point_gravity(&self) -> Option<f64> {
+        None
+    }
+
     /// The longest step of an adaptive integrator that cannot miss what the force does by itself as time passes.
     fn longest_step(&self) -> f64 {
         f64::INFINITY
@@ -74,12 +81,12 @@ fn finite(key: &str, value: f64) -> Result<(), Invalid> {
 }
 
 /// A parameter that must be positive.
-fn positive(key: &str, value: f64) -> Result<(), Invalid> {
+pub(crate) fn positive(key: &str, value: f64) -> Result<(), Invalid> {
     if value.is_finite() && value > 0.0 { Ok(()) } else { Err(Invalid::new(key, value, "a positive number")) }
 }
 
 /// A parameter that must not be negative.
-fn not_negative(key: &str, value: f64) -> Result<(), Invalid> {
+pub(crate) fn not_negative(key: &str, value: f64) -> Result<(), Invalid> {
     if value.is_finite() && value >= 0.0 { Ok(()) } else { Err(Invalid::new(key, value, "a number, zero or more")) }
 }
 

@@ -21,20 +21,24 @@
 
 // An axis or a lane indexes several arrays at once; zipped iterators of five arrays read worse.
 #![allow(clippy::needless_range_loop)]
+// Kernels must end up inside the function that is compiled for an instruction set.
+#![allow(clippy::inline_always)]
 
 mod constraint;
 mod engine;
 pub mod force;
 mod image;
+mod instructions;
 mod integrator;
+mod motion;
 mod neighbours;
 mod system;
 
 pub use constraint::{Drive, Pin, Signal};
 pub use engine::TimeDriven;
 pub use force::{
-    Drag, DrivingForce, Force, Gravity, LennardJones, PairForce, PairPotential, Spring, Springs, UniformField,
-    WeeksChandlerAndersen,
+    CentralField, Drag, DrivingForce, Force, Gravity, LennardJones, PairForce, PairPotential, Spring, Springs, TreeGravity,
+    UniformField, WeeksChandlerAndersen,
 };
 pub use integrator::Integrator;
 pub use neighbours::Neighbours;

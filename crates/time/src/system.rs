@@ -4,6 +4,8 @@ use corpuscle_core::{Axis, Boundary, Contact, Failure, Invalid, Meeting, Particl
 
 use crate::constraint::Held;
 use crate::force::Force;
+use crate::instructions::Instructions;
+use crate::motion::{Kick, KickAndDrift};
 
 /// State and forces. Scratch arrays live beside what uses them.
 pub(crate) struct System<const D: usize> {
@@ -20,6 +22,8 @@ pub(crate) struct System<const D: usize> {
     pub(crate) contacts: Vec<Contact<D>>,
     /// What rounding took from the positions, where the integrator knows it; else empty.
     pub(crate) remainder: Vec<Vector<D>>,
+    /// Whether positions or velocities may have become something else than finite numbers.
+    pub(crate) doubtful: bool,
     velocity_dependent: bool,
     estimate: Vec<Vector<D>>,
 }
@@ -38,6 +42,7 @@ impl<const D: usize> System<D> {
             fresh: false,
             contacts: vec![],
             remainder: vec![],
+            doubtful: true,
             velocity_dependent,
             estimate: vec![],
         };
@@ -126,16 +131,19 @@ impl<const D: usize> System<D> {
 
     /// `v += a dt`.
     pub(crate) fn kick(&mut self, dt: f64) {
-        for (v, &a) in self.particles.velocity.iter_mut().zip(&self.acceleration) {
-            *v += a * dt;
-        }
+        let velocity = Vector::components_mut(&mut self.particles.velocity);
+        let acceleration = Vector::components(&self.acceleration);
+        let finite = Instructions::detect().run(Kick { velocity, acceleration, dt });
+        self.doubtful |= !finite;
     }
 
-    /// `r += v dt`.
-    pub(crate) fn drift(&mut self, dt: f64) {
-        for (r, &v) in self.particles.position.iter_mut().zip(&self.particles.velocity) {
-            *r += v * dt;
-        }
+    /// `v += a kick`, then `r += v drift`, in one pass.
+    pub(crate) fn kick_and_drift(&mut self, kick: f64, drift: f64) {
+        let position = Vector::components_mut(&mut self.particles.position);
+        let velocity = Vector::components_mut(&mut self.particles.velocity);
+        let acceleration = Vector::components(&self.acceleration);
+        let finite = Instructions::detect().run(KickAndDrift { position, velocity, acceleration, kick, drift });
+        self.doubtful |= !finite;
         self.fresh = false;
     }
 
@@ -255,11 +263,9 @@ impl<const D: usize> System<D> {
         Ok(())
     }
 
-    /// The first particle with a coordinate or velocity that is no longer a number.
-    pub(crate) fn first_lost(&self) -> Option<usize> {
-        // Branchless over whole arrays: the search for the culprit runs only when there is one.
-        let finite = |values: &[Vector<D>]| values.iter().fold(true, |all, v| v.0.iter().fold(all, |all, x| all & x.is_finite()));
-        if finite(&self.particles.position) && finite(&self.particles.velocity) {
+    /// The first particle with a coordinate or velocity that is no longer a number. Searched for only when there is doubt.
+    pub(crate) fn first_lost(&mut self) -> Option<usize> {
+        if !std::mem::take(&mut self.doubtful) {
             return None;
         }
         (0..self.particles.len()).find(|&i| !(self.particles.position[i].is_finite() && self.particles.velocity[i].is_finite()))

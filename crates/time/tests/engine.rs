@@ -37,8 +37,12 @@ fn where_callers_stop_does_not_change_a_bit() {
                 let site = Vector::from_fn(|k| 1.2 * (i / 3usize.pow(k as u32) % 3) as f64 + 0.1 * random.uniform());
                 particles.push(site, Vector::from_fn(|_| random.normal()), 1.0, 0.0, 0);
             }
-            let forces: Vec<Box<dyn Force<3>>> =
-                vec![Box::new(PairForce::new(WeeksChandlerAndersen::new(1.0, 1.0))), Box::new(Gravity::new(0.5, 0.1))];
+            let mut forces: Vec<Box<dyn Force<3>>> = vec![Box::new(Gravity::new(0.5, 0.0))];
+            if name == "wisdom-holman" {
+                particles.mass[13] = 1e4; // it knows gravity alone, around a heavy star
+            } else {
+                forces.push(Box::new(PairForce::new(WeeksChandlerAndersen::new(1.0, 1.0))));
+            }
             let space = Boundary::new([0.0; 3], [4.0; 3], Axis::Open);
             TimeDriven::new(space, particles, forces, Integrator::from_name(name, 0.01).unwrap()).unwrap()
         };

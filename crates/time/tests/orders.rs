@@ -6,6 +6,8 @@ use corpuscle_core::{Axis, Boundary, Engine, Particles, Vector};
 use corpuscle_time::{Drag, Force, Gravity, Integrator, Spring, Springs, TimeDriven};
 
 const ECCENTRICITY: f64 = 0.3;
+/// Leaves no error to measure with one planet: see `planets.rs`.
+const EXACT_FOR_TWO: [&str; 1] = ["wisdom-holman"];
 
 /// A massless planet around a unit mass, starting at perihelion; semi-axis 1, period `2 pi`.
 fn planet(integrator: Integrator) -> TimeDriven<2> {
@@ -28,13 +30,15 @@ fn kepler(time: f64) -> Vector<2> {
 }
 
 /// `log2` of successive error ratios under halving of the step. The error is `C dt^p (1 + O(dt))`: the slope must round to
-/// `p` and come closer to it with each halving.
+/// `p` and come closer to it with each halving. Errors below `1e-10` are left out: there the roundings of up to a thousand
+/// steps, a few `1e-13`, would show in the slopes.
 fn assert_order(what: &str, order: u32, error: impl Fn(f64) -> f64, coarsest: f64) {
-    let errors: Vec<f64> = (0..5).map(|halving| error(coarsest / f64::from(1 << halving))).collect();
+    let errors = (0..5).map(|halving| error(coarsest / f64::from(1 << halving)));
+    let errors: Vec<f64> = errors.take_while(|error| *error > 1e-10).collect();
     let off: Vec<f64> = errors.windows(2).map(|pair| ((pair[0] / pair[1]).log2() - f64::from(order)).abs()).collect();
     println!("{what}: errors {errors:?}, distances of the slopes from {order}: {off:?}");
-    assert!(off[3] < 0.5, "{what} has not order {order}: {off:?}");
-    assert!(off[1..].windows(2).all(|pair| pair[1] < pair[0]), "{what} does not converge to order {order}: {off:?}");
+    assert!(off.len() >= 2 && off[off.len() - 1] < 0.5, "{what} has not order {order}: {off:?}");
+    assert!(off[off.len() / 3..].windows(2).all(|pair| pair[1] < pair[0]), "{what} does not converge to order {order}: {off:?}");
 }
 
 #[test]
@@ -46,6 +50,8 @@ fn halving_the_step_divides_the_error_by_two_to_the_order() {
         ("velocity-verlet", 1.0 / 64.0),
         ("runge-kutta-4", 1.0 / 32.0),
         ("yoshida-4", 1.0 / 32.0),
+        ("yoshida-6", 1.0 / 4.0),
+        ("yoshida-8", 1.0 / 2.0),
     ] {
         let error = |dt| {
             let mut engine = planet(Integrator::from_name(name, dt).unwrap());
@@ -83,7 +89,10 @@ fn symplectic_integrators_keep_energy_bounded() {
         let Particles { position, velocity, .. } = engine.particles();
         0.5 * (velocity[1] - velocity[0]).norm_squared() - 1.0 / (position[1] - position[0]).norm()
     };
-    for name in &Integrator::NAMES[..5] {
+    for name in Integrator::NAMES
+        .iter()
+        .filter(|name| !EXACT_FOR_TWO.contains(name) && Integrator::from_name(name, dt).unwrap().dt().is_some())
+    {
         let integrator = Integrator::from_name(name, dt).unwrap();
         let mut engine = planet(integrator);
         let mut stretch = |from: u32, to: u32| {
@@ -124,9 +133,14 @@ fn chain(integrator: Integrator) -> TimeDriven<2> {
 #[test]
 fn symmetric_integrators_run_backwards() {
     let (dt, steps) = (0.05, 2000u32);
-    for (name, reversible) in
-        [("velocity-verlet", true), ("yoshida-4", true), ("runge-kutta-4", false), ("symplectic-euler", false)]
-    {
+    for (name, reversible) in [
+        ("velocity-verlet", true),
+        ("yoshida-4", true),
+        ("yoshida-6", true),
+        ("yoshida-8", true),
+        ("runge-kutta-4", false),
+        ("symplectic-euler", false),
+    ] {
         let mut engine = chain(Integrator::from_name(name, dt).unwrap());
         let start = engine.snapshot();
         engine.advance(f64::from(steps) * dt, &mut ()).unwrap();

@@ -67,7 +67,8 @@ fn too_large_a_step_fails_with_the_last_good_state() {
 #[test]
 fn a_driven_end_moves_as_prescribed() {
     let signal = Signal::Pulse { amplitude: 0.5, centre: 4.0, width: 1.0 };
-    for name in Integrator::NAMES {
+    // The map for planets knows no springs.
+    for name in Integrator::NAMES.into_iter().filter(|&name| name != "wisdom-holman") {
         let engine = string(|_| 0.0, Integrator::from_name(name, 0.05).unwrap());
         let drive = Drive { particle: 1, axis: 1, signal };
         let mut engine = engine.with_drives(vec![drive]).unwrap();

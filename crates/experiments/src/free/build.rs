@@ -295,6 +295,7 @@ fn time_driven<const D: usize>(
     };
     let integrator = match (stepper.name.as_str(), stepper.time_step) {
         ("gauss-radau-15", None) => Integrator::GaussRadau15 { tolerance: 1e-9, first_step: None },
+        ("dormand-prince-8", None) => Integrator::DormandPrince8 { tolerance: 1e-12, first_step: None },
         (_, None) => return Err(Invalid::new("integrator.time_step", "missing", "a positive number")),
         (name, Some(step)) => Integrator::from_name(name, step).map_err(|error| {
             let key = if error.key == "integrator" { "integrator.name".into() } else { "integrator.time_step".to_string() };
@@ -415,7 +416,7 @@ fn located(system: &System, error: Invalid) -> Invalid {
         ["axis", _, "of", "the", "box"] => Some("box.faces".into()),
         ["uniform", "field", ..] => Some("field".into()),
         ["masses"] => Some("particle".into()),
-        ["integrator"] if error.value == Integrator::NAMES[5] => Some("integrator.name".into()),
+        ["integrator"] if Integrator::NAMES.contains(&error.value.as_str()) => Some("integrator.name".into()),
         _ => None,
     };
     Invalid { key: key.unwrap_or(error.key), ..error }

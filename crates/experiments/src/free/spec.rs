@@ -268,7 +268,7 @@ pub struct Contact {
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Stepper {
-    /// Name: explicit-euler, symplectic-euler, velocity-verlet, runge-kutta-4, yoshida-4 or gauss-radau-15.
+    /// Name: one of `Integrator::NAMES`.
     pub name: String,
     /// Time step; the adaptive integrator takes none.
     #[serde(default, skip_serializing_if = "Option::is_none")]

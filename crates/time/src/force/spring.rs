@@ -2,14 +2,21 @@
 
 use corpuscle_core::{Axis, Boundary, Invalid, Particles, Vector};
 
-use super::{Force, massive, not_negative};
+mod run;
+
+use super::{Force, finite, massive, not_negative};
 use crate::image::NearestImage;
+use crate::instructions::Instructions;
+use run::{Run, Stretch};
 
 /// A spring, with a dashpot beside it.
 ///
 /// With `r` the arrow from the first to the second particle (nearest image), `n = r/|r|` and `v` the relative velocity, the
 /// second feels `-(k (|r| - l) + c v . n) n`. With rest length zero spring and dashpot act on whole vectors,
 /// `-k r - c v`, which is linear: a stretched string whose transverse waves obey the wave equation at any amplitude.
+///
+/// Beyond Hooke, with `x = |r| - l`, the tension is `k (x + alpha x^2 + beta x^3)`, as in the chains of Fermi, Pasta, Ulam and
+/// Tsingou (1955, doi:10.2172/4376203), and the energy `k (x^2/2 + alpha x^3/3 + beta x^4/4)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spring {
     /// Index of one end.
@@ -22,21 +29,42 @@ pub struct Spring {
     pub rest_length: f64,
     /// Damping `c`, force per velocity.
     pub damping: f64,
+    /// `alpha` of the tension, per length; zero for Hooke's law.
+    pub quadratic: f64,
+    /// `beta` of the tension, per length squared; zero for Hooke's law.
+    pub cubic: f64,
 }
 
 impl Spring {
-    /// An undamped spring.
+    /// An undamped spring that obeys Hooke's law.
     pub fn new(first: usize, second: usize, stiffness: f64, rest_length: f64) -> Self {
-        Self { first, second, stiffness, rest_length, damping: 0.0 }
+        Self { first, second, stiffness, rest_length, damping: 0.0, quadratic: 0.0, cubic: 0.0 }
     }
 
     /// Elastic part of the force on the second particle.
     #[inline]
     fn elastic<const D: usize>(&self, r: Vector<D>) -> Vector<D> {
-        if self.rest_length == 0.0 {
-            return r * -self.stiffness;
+        if self.obeys_hooke() {
+            if self.rest_length == 0.0 {
+                return r * -self.stiffness;
+            }
+            return r * (self.stiffness * (self.rest_length / r.norm() - 1.0));
         }
-        r * (self.stiffness * (self.rest_length / r.norm() - 1.0))
+        let length = r.norm();
+        let x = length - self.rest_length;
+        let tension = self.stiffness * x * (1.0 + x * (self.quadratic + x * self.cubic));
+        // Ends in one place have no direction to pull in; with rest length zero they are at rest there.
+        if length == 0.0 && self.rest_length == 0.0 { Vector::ZERO } else { r * (-tension / length) }
+    }
+
+    /// Elastic energy at a length.
+    fn energy(&self, length: f64) -> f64 {
+        let x = length - self.rest_length;
+        self.stiffness * x * x * (0.5 + x * (self.quadratic / 3.0 + x * self.cubic / 4.0))
+    }
+
+    fn obeys_hooke(&self) -> bool {
+        self.quadratic == 0.0 && self.cubic == 0.0
     }
 
     /// Friction on the second particle, which moves at `v` relative to the first.
@@ -50,20 +78,26 @@ impl Spring {
 }
 
 /// Any number of springs.
+///
+/// Springs alike whose ends follow one another, as those of a chain or of the rows of a membrane, are found and handled
+/// together: nothing has to be looked up for each of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Springs {
-    springs: Vec<Spring>,
+    given: Vec<Spring>,
+    runs: Vec<Run>,
+    instructions: Instructions,
 }
 
 impl Springs {
     /// A network of springs.
     pub fn new(springs: Vec<Spring>) -> Self {
-        Self { springs }
+        let runs = Run::all(&springs);
+        Self { given: springs, runs, instructions: Instructions::detect() }
     }
 
     /// The springs.
     pub fn springs(&self) -> &[Spring] {
-        &self.springs
+        &self.given
     }
 
     fn arrows<'a, const D: usize>(
@@ -72,7 +106,7 @@ impl Springs {
         particles: &'a Particles<D>,
     ) -> impl Iterator<Item = (&'a Spring, Vector<D>)> {
         let image = NearestImage::new(boundary);
-        self.springs
+        self.given
             .iter()
             .map(move |spring| (spring, image.displacement(particles.position[spring.first], particles.position[spring.second])))
     }
@@ -84,19 +118,28 @@ impl<const D: usize> Force<D> for Springs {
     }
 
     fn accelerate(&mut self, _: f64, boundary: &Boundary<D>, particles: &Particles<D>, acceleration: &mut [Vector<D>]) {
-        for (spring, r) in self.arrows(boundary, particles) {
-            let mut force = spring.elastic(r);
-            if spring.damping != 0.0 {
-                force += spring.friction(r, particles.velocity[spring.second] - particles.velocity[spring.first]);
+        let image = NearestImage::new(boundary);
+        let open = boundary.axes.iter().all(|&axis| axis != Axis::Periodic);
+        let Particles { position, velocity, mass, .. } = particles;
+        for run in &self.runs {
+            if open && run.is_linear() {
+                self.instructions.run(Stretch { run, position, mass, acceleration });
+                continue;
             }
-            acceleration[spring.first] -= force * (1.0 / particles.mass[spring.first]);
-            acceleration[spring.second] += force * (1.0 / particles.mass[spring.second]);
+            for spring in run.springs() {
+                let r = image.displacement(position[spring.first], position[spring.second]);
+                let mut force = spring.elastic(r);
+                if spring.damping != 0.0 {
+                    force += spring.friction(r, velocity[spring.second] - velocity[spring.first]);
+                }
+                acceleration[spring.first] -= force * (1.0 / mass[spring.first]);
+                acceleration[spring.second] += force * (1.0 / mass[spring.second]);
+            }
         }
     }
 
     fn energy(&self, _: f64, boundary: &Boundary<D>, particles: &Particles<D>) -> f64 {
-        let energy = |(spring, r): (&Spring, Vector<D>)| 0.5 * spring.stiffness * (r.norm() - spring.rest_length).powi(2);
-        self.arrows(boundary, particles).map(energy).sum()
+        self.arrows(boundary, particles).map(|(spring, r)| spring.energy(r.norm())).sum()
     }
 
     fn virial(&self, _: f64, boundary: &Boundary<D>, particles: &Particles<D>) -> f64 {
@@ -104,7 +147,7 @@ impl<const D: usize> Force<D> for Springs {
     }
 
     fn validate(&self, boundary: &Boundary<D>, particles: &Particles<D>) -> Result<(), Invalid> {
-        for (number, spring) in self.springs.iter().enumerate() {
+        for (number, spring) in self.given.iter().enumerate() {
             massive("a spring", spring.first, particles)?;
             massive("a spring", spring.second, particles)?;
             if spring.first == spring.second {
@@ -113,6 +156,8 @@ impl<const D: usize> Force<D> for Springs {
             not_negative(&format!("stiffness of spring {number}"), spring.stiffness)?;
             not_negative(&format!("rest length of spring {number}"), spring.rest_length)?;
             not_negative(&format!("damping of spring {number}"), spring.damping)?;
+            finite(&format!("quadratic coefficient of spring {number}"), spring.quadratic)?;
+            finite(&format!("cubic coefficient of spring {number}"), spring.cubic)?;
             for k in (0..D).filter(|&k| boundary.axes[k] == Axis::Periodic) {
                 let half = 0.5 * boundary.extent()[k];
                 if spring.rest_length >= half {
@@ -125,6 +170,9 @@ impl<const D: usize> Force<D> for Springs {
     }
 
     fn depends_on_velocity(&self) -> bool {
-        self.springs.iter().any(|spring| spring.damping != 0.0)
+        self.given.iter().any(|spring| spring.damping != 0.0)
     }
 }
+
+#[cfg(test)]
+mod tests;

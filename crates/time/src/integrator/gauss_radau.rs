@@ -9,6 +9,7 @@
 use corpuscle_core::{Failure, Vector};
 
 use super::gauss_radau_table::{BINOMIAL, NODES, ORDER, Table};
+use super::{Adaptive, too_close};
 use crate::system::System;
 
 /// A step is shortened, or lengthened, by at most this factor and its inverse.
@@ -74,88 +75,6 @@ impl<const D: usize> GaussRadau<D> {
         let end = Sum { value: Vector([0.0]), lost: Vector([0.0]) };
         let table = Table::new();
         Self { tolerance, table, bodies: vec![], start: 0.0, taken: 0.0, end, next: first_step, stepped: false, after: vec![] }
-    }
-
-    /// Time up to which the trajectory is known.
-    pub(crate) fn reached(&self) -> f64 {
-        self.end.value[0]
-    }
-
-    /// Forgets the past: the next step starts from the system as it is at `time`.
-    pub(crate) fn restart(&mut self, system: &mut System<D>, time: f64) {
-        let zero = [Vector::ZERO; ORDER];
-        let exact = |value| Sum { value, lost: Vector::ZERO };
-        self.bodies.clear();
-        self.bodies.extend((0..system.particles.len()).map(|i| Body {
-            position: exact(system.unwrapped(i)),
-            velocity: exact(system.particles.velocity[i]),
-            acceleration: Vector::ZERO,
-            b: zero,
-            g: zero,
-            predicted: zero,
-            last_b: zero,
-            last_predicted: zero,
-        }));
-        self.after.clear();
-        system.remainder.clear();
-        system.remainder.resize(self.bodies.len(), Vector::ZERO);
-        self.start = time;
-        self.taken = 0.0;
-        self.end = Sum { value: Vector([time]), lost: Vector([0.0]) };
-        self.stepped = false;
-    }
-
-    /// Takes one step, of a length it chooses. The system's particles are left somewhere within it.
-    pub(crate) fn step(&mut self, system: &mut System<D>) -> Result<(), Failure> {
-        self.begin(system);
-        let start = self.start;
-        let longest = system.longest_step();
-        let mut dt = self.next.unwrap_or_else(|| self.first_guess()).min(longest);
-        let next = loop {
-            if start + dt == start {
-                let fastest = |i: &usize| self.bodies[*i].acceleration.norm();
-                let particle = (0..self.bodies.len()).max_by(|i, j| fastest(i).total_cmp(&fastest(j)));
-                let cause = format!(
-                    "the step needed, {dt:.1e}, is below the resolution of time: particles come too close; \
-                     soften the force or start a little differently"
-                );
-                return Err(Failure { time: start, particle, cause });
-            }
-            self.predict(dt);
-            let error = self.iterate(system, start, dt);
-            // Forces that overflowed give no number: anything shorter is better.
-            let wanted = if error.is_finite() {
-                (dt * libm::pow(self.tolerance / error, 1.0 / 7.0)).min(dt / SAFETY)
-            } else {
-                dt * SAFETY * SAFETY
-            };
-            if wanted >= SAFETY * dt {
-                break wanted;
-            }
-            dt = wanted;
-        };
-        self.taken = dt;
-        self.next = Some(next.min(longest));
-        self.stepped = true;
-        self.end.add(Vector([dt]));
-        // The accelerations at the end start the next step.
-        self.place(system, 1.0);
-        system.hold(self.reached());
-        system.accelerate(self.reached(), 0.0);
-        self.after.clone_from(&system.acceleration);
-        system.first_lost().map_or(Ok(()), |i| {
-            let cause = "position or velocity is no longer a number; a smaller tolerance may help".to_owned();
-            Err(Failure { time: start, particle: Some(i), cause })
-        })
-    }
-
-    /// Writes the state at `time`, which lies within the last step, into the system's particles.
-    pub(crate) fn interpolate(&self, system: &mut System<D>, time: f64) {
-        if self.stepped {
-            let share = if time == self.reached() { 1.0 } else { (time - self.start) / self.taken };
-            self.place(system, share);
-            system.hold(time);
-        }
     }
 
     /// Makes the end of the last step the start of the next.
@@ -278,7 +197,83 @@ impl<const D: usize> GaussRadau<D> {
             system.remainder[i] = position.lost;
             system.particles.velocity[i] = v + (lost + dv);
         }
-        system.fresh = false;
+        (system.fresh, system.doubtful) = (false, true);
+    }
+}
+
+impl<const D: usize> Adaptive<D> for GaussRadau<D> {
+    fn reached(&self) -> f64 {
+        self.end.value[0]
+    }
+
+    fn restart(&mut self, system: &mut System<D>, time: f64) {
+        let zero = [Vector::ZERO; ORDER];
+        let exact = |value| Sum { value, lost: Vector::ZERO };
+        self.bodies.clear();
+        self.bodies.extend((0..system.particles.len()).map(|i| Body {
+            position: exact(system.unwrapped(i)),
+            velocity: exact(system.particles.velocity[i]),
+            acceleration: Vector::ZERO,
+            b: zero,
+            g: zero,
+            predicted: zero,
+            last_b: zero,
+            last_predicted: zero,
+        }));
+        self.after.clear();
+        system.remainder.clear();
+        system.remainder.resize(self.bodies.len(), Vector::ZERO);
+        self.start = time;
+        self.taken = 0.0;
+        self.end = Sum { value: Vector([time]), lost: Vector([0.0]) };
+        self.stepped = false;
+    }
+
+    fn step(&mut self, system: &mut System<D>) -> Result<(), Failure> {
+        self.begin(system);
+        let start = self.start;
+        let longest = system.longest_step();
+        let mut dt = self.next.unwrap_or_else(|| self.first_guess()).min(longest);
+        let next = loop {
+            if start + dt == start {
+                let fastest = |i: &usize| self.bodies[*i].acceleration.norm();
+                let particle = (0..self.bodies.len()).max_by(|i, j| fastest(i).total_cmp(&fastest(j)));
+                return Err(too_close(start, particle, dt));
+            }
+            self.predict(dt);
+            let error = self.iterate(system, start, dt);
+            // Forces that overflowed give no number: anything shorter is better.
+            let wanted = if error.is_finite() {
+                (dt * libm::pow(self.tolerance / error, 1.0 / 7.0)).min(dt / SAFETY)
+            } else {
+                dt * SAFETY * SAFETY
+            };
+            if wanted >= SAFETY * dt {
+                break wanted;
+            }
+            dt = wanted;
+        };
+        self.taken = dt;
+        self.next = Some(next.min(longest));
+        self.stepped = true;
+        self.end.add(Vector([dt]));
+        // The accelerations at the end start the next step.
+        self.place(system, 1.0);
+        system.hold(self.reached());
+        system.accelerate(self.reached(), 0.0);
+        self.after.clone_from(&system.acceleration);
+        system.first_lost().map_or(Ok(()), |i| {
+            let cause = "position or velocity is no longer a number; a smaller tolerance may help".to_owned();
+            Err(Failure { time: start, particle: Some(i), cause })
+        })
+    }
+
+    fn interpolate(&mut self, system: &mut System<D>, time: f64) {
+        if self.stepped {
+            let share = if time == self.reached() { 1.0 } else { (time - self.start) / self.taken };
+            self.place(system, share);
+            system.hold(time);
+        }
     }
 }
 

@@ -76,7 +76,7 @@ impl<const D: usize> RungeKutta<D> {
             particles.position[i] = r;
             particles.velocity[i] = v;
         }
-        system.fresh = false;
+        (system.fresh, system.doubtful) = (false, true);
     }
 }
 

@@ -1,0 +1,96 @@
+use corpuscle_core::Random;
+
+use super::*;
+
+/// A net with springs in both directions and a few across, in shuffled order and with ends swapped.
+fn net(side: usize, like: Spring) -> (Particles<2>, Vec<Spring>) {
+    let mut random = Random::new(4, 0);
+    let mut beads = Particles::new();
+    let mut springs = vec![];
+    for i in 0..side * side {
+        // Half of the net is of equal masses.
+        let mass = if i < side * side / 2 { 0.7 } else { 0.5 + random.uniform() };
+        let place = Vector::from_fn(|k| [(i % side) as f64, (i / side) as f64][k] + 0.2 * random.normal());
+        beads.push(place, Vector::from_fn(|_| random.normal()), mass, 0.0, 0);
+        for (neighbour, there) in
+            [(i + 1, !(i + 1).is_multiple_of(side)), (i + side, true), (i + 2 * side + 3, i.is_multiple_of(5))]
+        {
+            if there && neighbour < side * side {
+                let (first, second) = if random.below(2) == 0 { (i, neighbour) } else { (neighbour, i) };
+                springs.push(Spring { first, second, ..like });
+            }
+        }
+    }
+    random.shuffle(&mut springs);
+    (beads, springs)
+}
+
+/// Every kind of spring against a loop over the list as it was given.
+#[test]
+fn runs_are_the_springs_they_were_made_of() {
+    let hooke = Spring::new(0, 1, 1.3, 0.0);
+    for like in [
+        hooke,
+        Spring { rest_length: 0.8, ..hooke },
+        Spring { damping: 0.3, ..hooke },
+        Spring { rest_length: 0.8, quadratic: 0.25, cubic: 0.1, damping: 0.2, ..hooke },
+    ] {
+        let (beads, springs) = net(67, like);
+        let boundary = Boundary::new([-2.0; 2], [70.0; 2], Axis::Open);
+        let mut expected = vec![(Vector::ZERO, 0.0); beads.len()];
+        for spring in &springs {
+            let (first, second) = (spring.first, spring.second);
+            let r = beads.position[second] - beads.position[first];
+            let mut force = spring.elastic(r);
+            if spring.damping != 0.0 {
+                force += spring.friction(r, beads.velocity[second] - beads.velocity[first]);
+            }
+            for (end, sign) in [(first, -1.0), (second, 1.0)] {
+                expected[end].0 += force * (sign / beads.mass[end]);
+                expected[end].1 += force.norm() / beads.mass[end];
+            }
+        }
+        let mut force = Springs::new(springs);
+        let mut results = vec![];
+        for instructions in Instructions::all() {
+            force.instructions = instructions;
+            let mut found = vec![Vector::ZERO; beads.len()];
+            force.accelerate(0.0, &boundary, &beads, &mut found);
+            for (i, (expected, size)) in expected.iter().enumerate() {
+                // Up to ten terms in another order.
+                assert!((found[i] - *expected).norm() <= 10.0 * 4.0 * f64::EPSILON * size, "{i}: {:?} {expected:?}", found[i]);
+            }
+            results.push(found);
+        }
+        assert!(results.iter().all(|found| *found == results[0]), "bits depend on the instruction set");
+    }
+}
+
+#[test]
+fn a_membrane_is_a_few_runs() {
+    let side = 100;
+    let mut springs = vec![];
+    for i in 0..side * side {
+        if i % side > 0 {
+            springs.push(Spring::new(i - 1, i, 1.0, 0.0));
+        }
+        if i >= side {
+            springs.push(Spring::new(i - side, i, 1.0, 0.0));
+        }
+    }
+    let runs = Run::all(&springs);
+    assert!(runs.len() < 2 * side, "{} runs", runs.len());
+    assert_eq!(runs.iter().map(|run| run.springs().count()).sum::<usize>(), springs.len());
+}
+
+/// Central differences of the energy: truncation `h^2 U'''/6` and rounding `U eps/h`, both below `1e-8` here.
+#[test]
+fn tension_is_the_slope_of_the_energy() {
+    for spring in [Spring::new(0, 1, 2.0, 0.7), Spring { quadratic: 0.25, cubic: 0.4, ..Spring::new(0, 1, 2.0, 0.7) }] {
+        for step in 1..30 {
+            let (length, h) = (0.1 * f64::from(step), 1e-5);
+            let slope = (spring.energy(length + h) - spring.energy(length - h)) / (2.0 * h);
+            assert!((spring.elastic(Vector([length, 0.0]))[0] + slope).abs() < 1e-8, "{spring:?} at {length}");
+        }
+    }
+}
