@@ -2,7 +2,8 @@
 //!
 //! A system is a [`Boundary`](corpuscle_core::Boundary), [`Particles`](corpuscle_core::Particles), a list of [`Force`]s
 //! and an [`Integrator`]; [`TimeDriven`] advances it in steps of time. A new force is one file with its acceleration and
-//! its energy; a new short-range potential ([`PairPotential`]) gets neighbour lists, the virial and the checks for free.
+//! its energy; a new short-range potential ([`PairPotential`]) gets neighbour lists, vector
+//! instructions, threads, the virial and the checks for free.
 //!
 //! ```
 //! use corpuscle_core::{Axis, Boundary, Engine, Particles, Vector};
@@ -24,8 +25,10 @@
 
 mod constraint;
 mod engine;
+mod exact;
 pub mod force;
 mod image;
+mod instructions;
 mod integrator;
 mod neighbours;
 mod system;
@@ -33,8 +36,8 @@ mod system;
 pub use constraint::{Drive, Pin, Signal};
 pub use engine::TimeDriven;
 pub use force::{
-    Drag, DrivingForce, Force, Gravity, LennardJones, PairForce, PairPotential, Spring, Springs, UniformField,
-    WeeksChandlerAndersen,
+    Drag, DrivingForce, Force, ForceShifted, Gravity, HarmonicRepulsion, InversePower, LennardJones, Morse, PairForce,
+    PairPotential, Spring, Springs, UniformField, WeeksChandlerAndersen, Yukawa,
 };
 pub use integrator::Integrator;
 pub use neighbours::Neighbours;

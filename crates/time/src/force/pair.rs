@@ -1,14 +1,27 @@
-//! Short-range forces between all pairs, from one potential.
+//! Short-range forces between all pairs, from one potential or from a table of them.
+
+mod kernel;
 
 use corpuscle_core::{Axis, Boundary, Invalid, Particles, Vector};
+use rayon::prelude::*;
 
 use super::{Force, massive, positive};
+use crate::exact::Quantum;
 use crate::image::NearestImage;
-use crate::neighbours::Neighbours;
+use crate::instructions::Instructions;
+use crate::neighbours::{Blocks, LANES, Neighbours, Share};
+use kernel::{AddEnergies, AddForces, Forces, Law, NONE, Pairs, Sums, Table, Uniform};
 
-/// A spherically symmetric potential of finite range. All that a new one needs is in its file; neighbour lists, virial and
-/// checks come with [`PairForce`].
-pub trait PairPotential: Send {
+/// How far typical pairs are below the bound of the sums' quantum: forces up to `2^14` times energy over length and energies
+/// up to `2^14` times the energy are still summed with the finest one.
+const HEADROOM: f64 = 16384.0;
+
+/// A spherically symmetric potential of finite range. All that a new one needs is in its file: neighbour lists, vectors,
+/// threads, virial and checks come with [`PairForce`].
+///
+/// `energy` and `force_over_distance` are compiled into loops over lanes: marked `#[inline(always)]`, and without branches
+/// and calls, they become vector instructions. They are also called beyond the range, where their values do not count.
+pub trait PairPotential: Copy + Send + Sync {
     /// Name, as a table of energies shows it.
     fn name(&self) -> &'static str;
 
@@ -18,7 +31,10 @@ pub trait PairPotential: Send {
     /// The length on which the potential changes: the diameter of a particle.
     fn length(&self) -> f64;
 
-    /// Energy `U(r)` of a pair within the range.
+    /// The energy on which it changes: the depth of a well, or the height at a length's distance.
+    fn depth(&self) -> f64;
+
+    /// Energy `U(r)` of a pair as the formula gives it: [`PairForce`] shifts it to zero at the range.
     fn energy(&self, r_squared: f64) -> f64;
 
     /// `-U'(r)/r` of a pair within the range, positive when it repels.
@@ -33,61 +49,60 @@ pub trait PairPotential: Send {
 
 /// The force of a [`PairPotential`] between all pairs of particles.
 ///
-/// Every sum runs in the order of the particles' indices, so its bits depend neither on the neighbour list's skin nor
-/// on when it was built: the list is scratch, not state.
+/// Forces of pairs are rounded to multiples of a fixed quantum (`2^-37` of [`depth`](PairPotential::depth) over
+/// [`length`](PairPotential::length), unless a force is too large for it) and added as integers. Their sums are therefore
+/// exact: bits depend on positions alone, neither on the neighbour list nor on the number of threads nor on the machine,
+/// and the forces of a closed system add up to exactly zero.
+///
+/// Large systems are computed by the threads of the rayon pool the caller runs in.
 pub struct PairForce<P, const D: usize> {
-    potential: P,
+    /// A symmetric square, row by row.
+    table: Vec<P>,
+    species: usize,
+    shifted: bool,
     neighbours: Neighbours<D>,
-    force: Vec<Vector<D>>,
-    near: Near<D>,
-}
-
-/// The neighbours of one particle that are within range, one array a quantity; longer than there are such neighbours.
-struct Near<const D: usize> {
-    index: Vec<u32>,
-    arrow: Vec<Vector<D>>,
-    /// Square of the distance; then, in its place, the force over the distance.
-    scale: Vec<f64>,
-}
-
-impl<const D: usize> Near<D> {
-    /// Collects those of `candidates` that are within range of `r`, in their order; returns their number.
-    #[inline]
-    fn collect(&mut self, image: &NearestImage<D>, range: f64, r: Vector<D>, candidates: &[u32], position: &[Vector<D>]) -> usize {
-        if self.index.len() < candidates.len() {
-            self.index.resize(candidates.len(), 0);
-            self.arrow.resize(candidates.len(), Vector::ZERO);
-            self.scale.resize(candidates.len(), 0.0);
-        }
-        // Written without a branch, which would be mispredicted for every third candidate.
-        let mut count = 0;
-        for &j in candidates {
-            let arrow = image.displacement(r, position[j as usize]);
-            let r_squared = arrow.norm_squared();
-            (self.index[count], self.arrow[count], self.scale[count]) = (j, arrow, r_squared);
-            count += usize::from(r_squared < range);
-        }
-        count
-    }
+    instructions: Instructions,
+    /// One array a share of the list.
+    force: Vec<Vec<Forces<D>>>,
+    quantum: Quantum,
 }
 
 impl<P: PairPotential, const D: usize> PairForce<P, D> {
-    /// The force of `potential`, with a neighbour list that reaches `0.3` lengths beyond its cutoff.
+    /// The force of one potential between all particles, with a neighbour list that chooses its own skin.
     pub fn new(potential: P) -> Self {
-        let skin = 0.3 * potential.length();
-        Self::with_skin(potential, skin)
+        Self::with_table(vec![potential], 1, None)
     }
 
     /// The force of `potential`, with a list that reaches `skin` beyond its cutoff: a wider one is built less often and
     /// holds more pairs.
     pub fn with_skin(potential: P, skin: f64) -> Self {
-        let neighbours = Neighbours::new(potential.cutoff(), skin);
-        Self { potential, neighbours, force: vec![], near: Near { index: vec![], arrow: vec![], scale: vec![] } }
+        Self::with_table(vec![potential], 1, Some(skin))
     }
 
-    /// The potential.
+    /// Forces that depend on the species of both particles: `potential(a, b)`, asked for `a <= b`, acts between species `a`
+    /// and `b`, each below `species`.
+    pub fn between_species(species: u16, potential: impl Fn(u16, u16) -> P) -> Self {
+        let table = (0..species).flat_map(|a| (0..species).map(move |b| (a.min(b), a.max(b)))).map(|(a, b)| potential(a, b));
+        Self::with_table(table.collect(), species.into(), None)
+    }
+
+    /// Leaves energies as the formula gives them, so that they jump to zero at the range: forces are the same.
+    #[must_use]
+    pub fn unshifted(mut self) -> Self {
+        self.shifted = false;
+        self
+    }
+
+    fn with_table(table: Vec<P>, species: usize, skin: Option<f64>) -> Self {
+        let cutoff = largest(&table, P::cutoff);
+        let neighbours = Neighbours::new(cutoff, skin);
+        let quantum = finest(&table, |potential| potential.depth() / potential.length());
+        Self { table, species, shifted: true, neighbours, instructions: Instructions::detect(), force: vec![], quantum }
+    }
+
+    /// The potential; between particles of the first species, where it depends on that.
     pub fn potential(&self) -> &P {
-        &self.potential
+        &self.table[0]
     }
 
     /// The neighbour list, as of the last evaluation.
@@ -95,84 +110,165 @@ impl<P: PairPotential, const D: usize> PairForce<P, D> {
         &self.neighbours
     }
 
-    /// Sums `f(r^2)` over all pairs within the range.
-    fn sum_over_pairs(&self, boundary: &Boundary<D>, particles: &Particles<D>, f: impl Fn(f64) -> f64) -> f64 {
-        let image = NearestImage::new(boundary);
-        let range = self.potential.cutoff() * self.potential.cutoff();
-        let mut sum = 0.0;
-        let mut add = |list: &Neighbours<D>| {
-            for (i, &r) in particles.position.iter().enumerate() {
-                for &j in list.of(i) {
-                    let r_squared = image.displacement(r, particles.position[j as usize]).norm_squared();
-                    if r_squared < range {
-                        sum += f(r_squared);
-                    }
-                }
+    /// Sums the forces of all pairs into `self.force`, with the quantum that suits the largest of them; returns the bound of
+    /// all forces.
+    fn add_forces<L: Law>(&mut self, law: L, boundary: &Boundary<D>) -> f64 {
+        let cutoff = largest(&self.table, P::cutoff);
+        let finest = finest(&self.table, |potential| potential.depth() / potential.length());
+        loop {
+            let mut force = std::mem::take(&mut self.force);
+            force.resize_with(self.neighbours.shares.len(), Vec::new);
+            let blocks = &self.neighbours.blocks;
+            let one = |(force, share): (&mut Vec<Forces<D>>, &Share)| {
+                force.clear();
+                force.resize(blocks.position.len(), [NONE; D]);
+                let pairs = self.pairs(law, boundary, blocks, share);
+                self.instructions.run(AddForces { pairs, quantum: self.quantum, force })
+            };
+            let scale = force.par_iter_mut().zip(&self.neighbours.shares).map(one).reduce(|| 0.0, larger);
+            self.force = force;
+            // The last quantum is only a guess, which saves time where it is right: the bits follow from the largest force.
+            let quantum = finest.coarsened(scale * cutoff);
+            if quantum == self.quantum {
+                return scale * cutoff;
             }
-        };
-        if self.neighbours.hold(boundary, &particles.position) {
-            add(&self.neighbours);
-        } else {
-            let mut list = Neighbours::new(self.potential.cutoff(), 0.0);
-            list.update(boundary, &particles.position);
-            add(&list);
+            self.quantum = quantum;
         }
-        sum
     }
+
+    fn pairs<'a, L>(&self, law: L, boundary: &Boundary<D>, blocks: &'a Blocks<D>, share: &'a Share) -> Pairs<'a, L, D> {
+        Pairs { law, image: NearestImage::new(boundary), blocks, share, shifted: self.shifted }
+    }
+
+    /// Energy and virial.
+    fn sums(&self, boundary: &Boundary<D>, particles: &Particles<D>) -> [f64; 2] {
+        let mut rebuilt = Neighbours::new(largest(&self.table, P::cutoff), Some(0.0));
+        let (mut blocks, shares) = if let Some(blocks) = self.neighbours.blocks_at(boundary, &particles.position) {
+            (blocks, &self.neighbours.shares)
+        } else {
+            rebuilt.update(boundary, &particles.position);
+            (std::mem::replace(&mut rebuilt.blocks, Blocks::empty()), &rebuilt.shares)
+        };
+        blocks.load_species(&particles.species);
+        let finest = finest(&self.table, P::depth);
+        let mut quanta = [finest; 2];
+        loop {
+            let one = |share| -> Sums {
+                let quanta = quanta.map(|quantum| [quantum, quantum.finer()]);
+                if let [potential] = self.table[..] {
+                    let pairs = self.pairs(Uniform(potential), boundary, &blocks, share);
+                    self.instructions.run(AddEnergies { pairs, quanta })
+                } else {
+                    let pairs = self.pairs(Table(&self.table, self.species), boundary, &blocks, share);
+                    self.instructions.run(AddEnergies { pairs, quanta })
+                }
+            };
+            let parts: Vec<Sums> = shares.par_iter().map(one).collect();
+            let bounds = [0, 1].map(|number| parts.iter().map(|part| part.largest[number]).fold(0.0, larger));
+            if !bounds.iter().all(|bound| bound.is_finite()) {
+                return bounds;
+            }
+            let needed = bounds.map(|bound| finest.coarsened(bound));
+            if needed == quanta {
+                let sum = |number: usize| parts.iter().map(|part| part.total[number]).sum::<i128>() as f64;
+                return [0, 1].map(|number| sum(number) * quanta[number].finer().unit());
+            }
+            quanta = needed;
+        }
+    }
+
+    /// The particles of pairs with a force beyond all numbers.
+    fn lost(&self, boundary: &Boundary<D>, particles: &Particles<D>) -> Vec<usize> {
+        let image = NearestImage::new(boundary);
+        let meets = |i: usize, j: usize| {
+            let r_squared = image.displacement(particles.position[i], particles.position[j]).norm_squared();
+            let potential = &self.table[usize::from(particles.species[i]) % self.species * self.species
+                + usize::from(particles.species[j]) % self.species];
+            let within = r_squared < potential.cutoff() * potential.cutoff();
+            within && !(potential.force_over_distance(r_squared) * potential.cutoff()).is_finite()
+        };
+        (0..particles.len()).filter(|&i| (0..particles.len()).any(|j| j != i && meets(i, j))).collect()
+    }
+}
+
+/// The largest of a quantity in a table.
+fn largest<P>(table: &[P], quantity: impl Fn(&P) -> f64) -> f64 {
+    table.iter().map(quantity).fold(0.0, f64::max)
+}
+
+/// The quantum sums start from, for a quantity of typical size.
+fn finest<P>(table: &[P], size: impl Fn(&P) -> f64) -> Quantum {
+    Quantum::for_terms_up_to(HEADROOM * largest(table, |potential| size(potential).abs()))
+}
+
+/// The larger of two magnitudes; one that is not a number counts as the largest.
+fn larger(a: f64, b: f64) -> f64 {
+    if a.to_bits() > b.to_bits() { a } else { b }
 }
 
 impl<P: PairPotential, const D: usize> Force<D> for PairForce<P, D> {
     fn name(&self) -> &'static str {
-        self.potential.name()
+        self.potential().name()
     }
 
     fn accelerate(&mut self, _: f64, boundary: &Boundary<D>, particles: &Particles<D>, acceleration: &mut [Vector<D>]) {
         self.neighbours.update(boundary, &particles.position);
-        let image = NearestImage::new(boundary);
-        let range = self.potential.cutoff() * self.potential.cutoff();
-        let position = &particles.position;
-        let (force, near) = (&mut self.force, &mut self.near);
-        force.clear();
-        force.resize(position.len(), Vector::ZERO);
-        for (i, &r) in position.iter().enumerate() {
-            let mut total = Vector::ZERO;
-            let count = near.collect(&image, range, r, self.neighbours.of(i), position);
-            for scale in &mut near.scale[..count] {
-                *scale = self.potential.force_over_distance(*scale);
+        let bound = if let [potential] = self.table[..] {
+            self.add_forces(Uniform(potential), boundary)
+        } else {
+            self.neighbours.blocks.load_species(&particles.species);
+            let (table, species) = (self.table.clone(), self.species);
+            self.add_forces(Table(&table, species), boundary)
+        };
+        if !bound.is_finite() {
+            for i in self.lost(boundary, particles) {
+                acceleration[i] = Vector([f64::NAN; D]);
             }
-            for ((&j, &arrow), &scale) in near.index[..count].iter().zip(&near.arrow[..count]).zip(&near.scale[..count]) {
-                let f = arrow * scale;
-                force[j as usize] += f;
-                total -= f;
-            }
-            force[i] += total;
+            return;
         }
-        for ((a, f), mass) in acceleration.iter_mut().zip(force).zip(&particles.mass) {
-            *a += *f * (1.0 / mass);
+        let (unit, place) = (self.quantum.unit(), &self.neighbours.blocks.place);
+        for ((a, &mass), &place) in acceleration.iter_mut().zip(&particles.mass).zip(place) {
+            let (block, lane) = (place as usize / LANES, place as usize % LANES);
+            let scale = unit / mass;
+            for k in 0..D {
+                let sum = self.force.iter().fold(0i64, |sum, force| sum.wrapping_add(force[block][k][lane]));
+                a[k] += sum as f64 * scale;
+            }
         }
     }
 
     fn energy(&self, _: f64, boundary: &Boundary<D>, particles: &Particles<D>) -> f64 {
-        self.sum_over_pairs(boundary, particles, |r_squared| self.potential.energy(r_squared))
+        self.sums(boundary, particles)[0]
     }
 
     fn virial(&self, _: f64, boundary: &Boundary<D>, particles: &Particles<D>) -> f64 {
-        self.sum_over_pairs(boundary, particles, |r_squared| r_squared * self.potential.force_over_distance(r_squared))
+        self.sums(boundary, particles)[1]
     }
 
     fn validate(&self, boundary: &Boundary<D>, particles: &Particles<D>) -> Result<(), Invalid> {
-        self.potential.validate()?;
-        positive("cutoff", self.potential.cutoff())?;
-        for k in (0..D).filter(|&k| boundary.axes[k] == Axis::Periodic) {
-            let half = 0.5 * boundary.extent()[k];
-            if self.potential.cutoff() > half {
-                return Err(Invalid::new(
-                    format!("cutoff of {}", self.potential.name()),
-                    self.potential.cutoff(),
-                    format!("at most half the periodic box, {half} along axis {k}: a particle would meet two images of another"),
-                ));
+        if self.table.is_empty() {
+            return Err(Invalid::new("species", 0, "at least one"));
+        }
+        for potential in &self.table {
+            potential.validate()?;
+            positive("cutoff", potential.cutoff())?;
+            positive("length", potential.length())?;
+            for k in (0..D).filter(|&k| boundary.axes[k] == Axis::Periodic) {
+                let half = 0.5 * boundary.extent()[k];
+                if potential.cutoff() > half {
+                    return Err(Invalid::new(
+                        format!("cutoff of {}", potential.name()),
+                        potential.cutoff(),
+                        format!("at most half the periodic box, {half} along axis {k}: a particle would meet two images of another"),
+                    ));
+                }
             }
         }
-        (0..particles.len()).try_for_each(|i| massive(self.potential.name(), i, particles))
+        let known = |i: &usize| self.species == 1 || usize::from(particles.species[*i]) < self.species;
+        if let Some(i) = (0..particles.len()).find(|i| !known(i)) {
+            let expected = format!("a species below {}", self.species);
+            return Err(Invalid::new(format!("species of particle {i}"), particles.species[i], expected));
+        }
+        (0..particles.len()).try_for_each(|i| massive(self.potential().name(), i, particles))
     }
 }
