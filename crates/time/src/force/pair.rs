@@ -6,7 +6,7 @@ use corpuscle_core::{Axis, Boundary, Invalid, Particles, Vector};
 use rayon::prelude::*;
 
 use super::{Force, massive, positive};
-use crate::exact::Quantum;
+use crate::exact::{BITS, Quantum};
 use crate::image::NearestImage;
 use crate::instructions::Instructions;
 use crate::neighbours::{Blocks, LANES, Neighbours, Share};
@@ -52,7 +52,8 @@ pub trait PairPotential: Copy + Send + Sync {
 /// Forces of pairs are rounded to multiples of a fixed quantum (`2^-37` of [`depth`](PairPotential::depth) over
 /// [`length`](PairPotential::length), unless a force is too large for it) and added as integers. Their sums are therefore
 /// exact: bits depend on positions alone, neither on the neighbour list nor on the number of threads nor on the machine,
-/// and the forces of a closed system add up to exactly zero.
+/// and the forces of a closed system add up to exactly zero. An integrator that asks for precise accelerations gets what
+/// the rounding leaves, too, summed in the same way.
 ///
 /// Large systems are computed by the threads of the rayon pool the caller runs in.
 pub struct PairForce<P, const D: usize> {
@@ -63,7 +64,7 @@ pub struct PairForce<P, const D: usize> {
     neighbours: Neighbours<D>,
     instructions: Instructions,
     /// One array a share of the list.
-    force: Vec<Vec<Forces<D>>>,
+    force: Vec<Vec<Forces<D, 1>>>,
     quantum: Quantum,
 }
 
@@ -110,23 +111,59 @@ impl<P: PairPotential, const D: usize> PairForce<P, D> {
         &self.neighbours
     }
 
-    /// Sums the forces of all pairs into `self.force`, with the quantum that suits the largest of them; returns the bound of
-    /// all forces.
-    fn add_forces<L: Law>(&mut self, law: L, boundary: &Boundary<D>) -> f64 {
+    /// Adds the accelerations by the forces of all pairs, which `force` gathers.
+    fn add_accelerations<const LEVELS: usize>(
+        &mut self,
+        boundary: &Boundary<D>,
+        particles: &Particles<D>,
+        force: &mut Vec<Vec<Forces<D, LEVELS>>>,
+        acceleration: &mut [Vector<D>],
+    ) {
+        self.neighbours.update(boundary, &particles.position);
+        let bound = if let [potential] = self.table[..] {
+            self.add_forces(Uniform(potential), boundary, force)
+        } else {
+            self.neighbours.blocks.load_species(&particles.species);
+            let (table, species) = (self.table.clone(), self.species);
+            self.add_forces(Table(&table, species), boundary, force)
+        };
+        if !bound.is_finite() {
+            for i in self.lost(boundary, particles) {
+                acceleration[i] = Vector([f64::NAN; D]);
+            }
+            return;
+        }
+        let unit = if LEVELS == 1 { self.quantum.unit() } else { self.quantum.finer().unit() };
+        let place = &self.neighbours.blocks.place;
+        for ((a, &mass), &place) in acceleration.iter_mut().zip(&particles.mass).zip(place) {
+            let (block, lane) = (place as usize / LANES, place as usize % LANES);
+            let scale = unit / mass;
+            for k in 0..D {
+                let sum = |level: usize| force.iter().fold(0i64, |sum, force| sum.wrapping_add(force[block][level][k][lane]));
+                a[k] += scale * if LEVELS == 1 { sum(0) as f64 } else { ((i128::from(sum(0)) << BITS) + i128::from(sum(1))) as f64 };
+            }
+        }
+    }
+
+    /// Sums the forces of all pairs, with the quantum that suits the largest of them; returns the bound of all forces.
+    fn add_forces<L: Law, const LEVELS: usize>(
+        &mut self,
+        law: L,
+        boundary: &Boundary<D>,
+        force: &mut Vec<Vec<Forces<D, LEVELS>>>,
+    ) -> f64 {
         let cutoff = largest(&self.table, P::cutoff);
         let finest = finest(&self.table, |potential| potential.depth() / potential.length());
+        let (blocks, shares) = (&self.neighbours.blocks, &self.neighbours.shares);
+        force.resize_with(shares.len(), Vec::new);
         loop {
-            let mut force = std::mem::take(&mut self.force);
-            force.resize_with(self.neighbours.shares.len(), Vec::new);
-            let blocks = &self.neighbours.blocks;
-            let one = |(force, share): (&mut Vec<Forces<D>>, &Share)| {
+            let one = |(force, share): (&mut Vec<Forces<D, LEVELS>>, &Share)| {
                 force.clear();
-                force.resize(blocks.position.len(), [NONE; D]);
+                force.resize(blocks.position.len(), [[NONE; D]; LEVELS]);
                 let pairs = self.pairs(law, boundary, blocks, share);
-                self.instructions.run(AddForces { pairs, quantum: self.quantum, force })
+                self.instructions.run(AddForces { pairs, quanta: [self.quantum, self.quantum.finer()], force })
             };
-            let scale = force.par_iter_mut().zip(&self.neighbours.shares).map(one).reduce(|| 0.0, larger);
-            self.force = force;
+            let scale = force.par_iter_mut().zip(shares).map(one).reduce(|| 0.0, larger);
             // The last quantum is only a guess, which saves time where it is right: the bits follow from the largest force.
             let quantum = finest.coarsened(scale * cutoff);
             if quantum == self.quantum {
@@ -212,29 +249,20 @@ impl<P: PairPotential, const D: usize> Force<D> for PairForce<P, D> {
     }
 
     fn accelerate(&mut self, _: f64, boundary: &Boundary<D>, particles: &Particles<D>, acceleration: &mut [Vector<D>]) {
-        self.neighbours.update(boundary, &particles.position);
-        let bound = if let [potential] = self.table[..] {
-            self.add_forces(Uniform(potential), boundary)
-        } else {
-            self.neighbours.blocks.load_species(&particles.species);
-            let (table, species) = (self.table.clone(), self.species);
-            self.add_forces(Table(&table, species), boundary)
-        };
-        if !bound.is_finite() {
-            for i in self.lost(boundary, particles) {
-                acceleration[i] = Vector([f64::NAN; D]);
-            }
-            return;
-        }
-        let (unit, place) = (self.quantum.unit(), &self.neighbours.blocks.place);
-        for ((a, &mass), &place) in acceleration.iter_mut().zip(&particles.mass).zip(place) {
-            let (block, lane) = (place as usize / LANES, place as usize % LANES);
-            let scale = unit / mass;
-            for k in 0..D {
-                let sum = self.force.iter().fold(0i64, |sum, force| sum.wrapping_add(force[block][k][lane]));
-                a[k] += sum as f64 * scale;
-            }
-        }
+        let mut force = std::mem::take(&mut self.force);
+        self.add_accelerations(boundary, particles, &mut force, acceleration);
+        self.force = force;
+    }
+
+    fn accelerate_precisely(
+        &mut self,
+        _: f64,
+        boundary: &Boundary<D>,
+        particles: &Particles<D>,
+        _: &[Vector<D>],
+        acceleration: &mut [Vector<D>],
+    ) {
+        self.add_accelerations::<2>(boundary, particles, &mut vec![], acceleration);
     }
 
     fn energy(&self, _: f64, boundary: &Boundary<D>, particles: &Particles<D>) -> f64 {

@@ -7,8 +7,8 @@ use crate::neighbours::{Blocks, LANES, Lanes, Rows, Share};
 
 use super::PairPotential;
 
-/// Force on each particle of a block, in quanta.
-pub(super) type Forces<const D: usize> = [Lanes<i64>; D];
+/// Force on each particle of a block: in quanta and, on a second level, what that leaves in quanta of its own.
+pub(super) type Forces<const D: usize, const LEVELS: usize> = [[Lanes<i64>; D]; LEVELS];
 
 /// No force.
 pub(super) const NONE: Lanes<i64> = Lanes([0; LANES]);
@@ -110,31 +110,31 @@ fn largest_of(bits: [i64; LANES]) -> f64 {
 }
 
 /// Adds the force of every pair of a share; returns the largest `|U'(r)/r|`.
-pub(super) struct AddForces<'a, L, const D: usize> {
+pub(super) struct AddForces<'a, L, const D: usize, const LEVELS: usize> {
     pub(super) pairs: Pairs<'a, L, D>,
-    pub(super) quantum: Quantum,
-    pub(super) force: &'a mut [Forces<D>],
+    pub(super) quanta: [Quantum; 2],
+    pub(super) force: &'a mut [Forces<D, LEVELS>],
 }
 
-impl<L: Law, const D: usize> Kernel for AddForces<'_, L, D> {
+impl<L: Law, const D: usize, const LEVELS: usize> Kernel for AddForces<'_, L, D, LEVELS> {
     type Output = f64;
 
     #[inline(always)]
     fn run(self) -> f64 {
         let mut largest = [0; LANES];
         let share = self.pairs.share;
-        add_forces::<L, D, false>(&self.pairs, &share.direct, self.quantum, self.force, &mut largest);
-        add_forces::<L, D, true>(&self.pairs, &share.imaged, self.quantum, self.force, &mut largest);
+        add_forces::<L, D, LEVELS, false>(&self.pairs, &share.direct, self.quanta, self.force, &mut largest);
+        add_forces::<L, D, LEVELS, true>(&self.pairs, &share.imaged, self.quanta, self.force, &mut largest);
         largest_of(largest)
     }
 }
 
 #[inline(always)]
-fn add_forces<L: Law, const D: usize, const IMAGE: bool>(
+fn add_forces<L: Law, const D: usize, const LEVELS: usize, const IMAGE: bool>(
     pairs: &Pairs<'_, L, D>,
     rows: &Rows,
-    quantum: Quantum,
-    force: &mut [Forces<D>],
+    quanta: [Quantum; 2],
+    force: &mut [Forces<D, LEVELS>],
     largest: &mut [i64; LANES],
 ) {
     let blocks = pairs.blocks;
@@ -146,11 +146,11 @@ fn add_forces<L: Law, const D: usize, const IMAGE: bool>(
             r[k] = blocks.position[block][k][lane];
         }
         let species = blocks.species[block][lane];
-        let mut total = [NONE; D];
-        meet::<L, D, IMAGE>(pairs, quantum, (&r, species), block, later(lane, own), &mut force[block], &mut total, &mut most);
+        let mut total = [[NONE; D]; LEVELS];
+        meet::<L, D, LEVELS, IMAGE>(pairs, quanta, (&r, species), block, later(lane, own), &mut force[block], &mut total, &mut most);
         for &other in row {
             let other = other as usize;
-            meet::<L, D, IMAGE>(pairs, quantum, (&r, species), other, [true; LANES], &mut force[other], &mut total, &mut most);
+            meet::<L, D, LEVELS, IMAGE>(pairs, quanta, (&r, species), other, [true; LANES], &mut force[other], &mut total, &mut most);
         }
         recoil(&mut force[block], lane, &total);
     }
@@ -159,22 +159,24 @@ fn add_forces<L: Law, const D: usize, const IMAGE: bool>(
 
 /// Takes what one particle exerted off the force on it.
 #[inline(never)] // the sums over lanes, where they can be seen, make the compiler give up on vectors in the loop before
-fn recoil<const D: usize>(force: &mut Forces<D>, lane: usize, total: &Forces<D>) {
-    for k in 0..D {
-        force[k][lane] = total[k].0.iter().fold(force[k][lane], |force, &f| force.wrapping_sub(f));
+fn recoil<const D: usize, const LEVELS: usize>(force: &mut Forces<D, LEVELS>, lane: usize, total: &Forces<D, LEVELS>) {
+    for (force, total) in force.iter_mut().zip(total) {
+        for k in 0..D {
+            force[k][lane] = total[k].0.iter().fold(force[k][lane], |force, &f| force.wrapping_sub(f));
+        }
     }
 }
 
 /// The forces of the particle at `r` on the particles of a block.
 #[inline(always)]
-fn meet<L: Law, const D: usize, const IMAGE: bool>(
+fn meet<L: Law, const D: usize, const LEVELS: usize, const IMAGE: bool>(
     pairs: &Pairs<'_, L, D>,
-    quantum: Quantum,
+    quanta: [Quantum; 2],
     (r, species): (&[f64; D], u16),
     other: usize,
     counts: [bool; LANES],
-    force: &mut Forces<D>,
-    total: &mut Forces<D>,
+    force: &mut Forces<D, LEVELS>,
+    total: &mut Forces<D, LEVELS>,
     most: &mut [i64; LANES],
 ) {
     let (arrow, r_squared) = arrows::<D, IMAGE>(&pairs.image, r, &pairs.blocks.position[other]);
@@ -188,9 +190,13 @@ fn meet<L: Law, const D: usize, const IMAGE: bool>(
     keep_largest(most, &scale);
     for k in 0..D {
         for lane in 0..LANES {
-            let f = quantum.round(arrow[k][lane] * scale[lane]);
-            force[k][lane] = force[k][lane].wrapping_add(f);
-            total[k][lane] = total[k][lane].wrapping_add(f);
+            let mut left = arrow[k][lane] * scale[lane];
+            for level in 0..LEVELS {
+                let f;
+                (f, left) = quanta[level].split(left);
+                force[level][k][lane] = force[level][k][lane].wrapping_add(f);
+                total[level][k][lane] = total[level][k][lane].wrapping_add(f);
+            }
         }
     }
 }
