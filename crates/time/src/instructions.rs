@@ -25,7 +25,6 @@ pub(crate) enum Instructions {
 impl Instructions {
     /// The best this machine has.
     pub(crate) fn detect() -> Self {
-        match std::env::var("INSTR").as_deref() { Ok("plain") => return Self::Plain, Ok("avx2") => return Self::Avx2, _ => {} }
         #[cfg(target_arch = "x86_64")]
         {
             if is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq") && is_x86_feature_detected!("avx512vl") {

@@ -27,10 +27,13 @@ impl Rows {
         self.blocks.clear();
     }
 
+    /// Ends the row of `place`, if there is anything in it.
     fn close(&mut self, place: usize, own: bool) {
-        self.places.push(place as u32);
-        self.own.push(own);
-        self.ends.push(self.blocks.len() as u32);
+        if own || self.blocks.len() > self.ends.last().map_or(0, |&end| end as usize) {
+            self.places.push(place as u32);
+            self.own.push(own);
+            self.ends.push(self.blocks.len() as u32);
+        }
     }
 
     /// Place, whether its own block counts, and blocks of each row.
@@ -99,7 +102,7 @@ impl<'a, const D: usize> Map<'a, D> {
         }
     }
 
-    /// Whether particles of two blocks, neither of which touches a face, may come to be half a box apart.
+    /// Whether particles of two blocks (or one), neither of which touches a face, may come to be half a box apart.
     fn far(&self, first: usize, second: usize) -> bool {
         let ((low, high), (other_low, other_high)) = (&self.boxes[first], &self.boxes[second]);
         (0..D).any(|k| (high[k] - other_low[k]).max(other_high[k] - low[k]) >= self.half[k])
@@ -133,6 +136,7 @@ impl<const D: usize> Kernel for Search<'_, D> {
             imaged.clear();
             let (low, high) = &map.boxes[block];
             let border = map.border[block];
+            let own_imaged = border || (map.small && map.far(block, block));
             columns.for_each_near(low, high, map.reach, column, |other, wrapped, room| {
                 let first = (columns.starts[other] as usize).max(block + 1);
                 let last = (columns.starts[other + 1] as usize).max(first);
@@ -162,32 +166,13 @@ impl<const D: usize> Kernel for Search<'_, D> {
             for lane in (0..LANES).filter(|lane| blocks.particle[block * LANES + lane] != NOBODY) {
                 let place = block * LANES + lane;
                 let r = std::array::from_fn(|k| blocks.position[block][k][lane]);
-                if !border {
-                    keep_near::<D, false>(map, &r, &direct, &mut squares, &mut share.direct.blocks);
-                    share.direct.close(place, true);
-                }
-                let before = share.imaged.blocks.len();
+                keep_near::<D, false>(map, &r, &direct, &mut squares, &mut share.direct.blocks);
+                share.direct.close(place, !own_imaged);
                 keep_near::<D, true>(map, &r, &imaged, &mut squares, &mut share.imaged.blocks);
-                if border || share.imaged.blocks.len() > before {
-                    share.imaged.close(place, border);
-                }
+                share.imaged.close(place, own_imaged);
             }
         }
     }
-}
-
-/// The blocks of `range`, which lie in order along a column, that overlap `low..high`.
-#[inline(always)]
-fn overlap<const D: usize>(
-    boxes: &[([f64; D], [f64; D])],
-    range: std::ops::Range<usize>,
-    low: f64,
-    high: f64,
-) -> std::ops::Range<usize> {
-    let column = &boxes[range.clone()];
-    let start = column.partition_point(|(_, upper)| upper[D - 1] < low);
-    let count = column[start..].iter().take_while(|(lower, _)| lower[D - 1] <= high).count();
-    range.start + start..range.start + start + count
 }
 
 /// Appends to `kept` the candidates with a particle within reach of `r`.
@@ -226,3 +211,17 @@ fn keep_near<const D: usize, const IMAGE: bool>(
     kept.truncate(start + count);
 }
 
+
+/// The blocks of `range`, which lie in order along a column, that overlap `low..high`.
+#[inline(always)]
+fn overlap<const D: usize>(
+    boxes: &[([f64; D], [f64; D])],
+    range: std::ops::Range<usize>,
+    low: f64,
+    high: f64,
+) -> std::ops::Range<usize> {
+    let column = &boxes[range.clone()];
+    let start = column.partition_point(|(_, upper)| upper[D - 1] < low);
+    let count = column[start..].iter().take_while(|(lower, _)| lower[D - 1] <= high).count();
+    range.start + start..range.start + start + count
+}
