@@ -7,8 +7,8 @@ use corpuscle_core::{Axis, Boundary, Vector};
 use rayon::prelude::*;
 
 pub(crate) use blocks::{Blocks, LANES, Lanes};
-pub(crate) use rows::{Rows, Share};
 use rows::{Map, Search};
+pub(crate) use rows::{Rows, Share};
 
 use crate::image::NearestImage;
 use crate::instructions::{Instructions, Kernel};

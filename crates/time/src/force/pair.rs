@@ -140,7 +140,8 @@ impl<P: PairPotential, const D: usize> PairForce<P, D> {
             let scale = unit / mass;
             for k in 0..D {
                 let sum = |level: usize| force.iter().fold(0i64, |sum, force| sum.wrapping_add(force[block][level][k][lane]));
-                a[k] += scale * if LEVELS == 1 { sum(0) as f64 } else { ((i128::from(sum(0)) << BITS) + i128::from(sum(1))) as f64 };
+                a[k] +=
+                    scale * if LEVELS == 1 { sum(0) as f64 } else { ((i128::from(sum(0)) << BITS) + i128::from(sum(1))) as f64 };
             }
         }
     }
@@ -287,7 +288,9 @@ impl<P: PairPotential, const D: usize> Force<D> for PairForce<P, D> {
                     return Err(Invalid::new(
                         format!("cutoff of {}", potential.name()),
                         potential.cutoff(),
-                        format!("at most half the periodic box, {half} along axis {k}: a particle would meet two images of another"),
+                        format!(
+                            "at most half the periodic box, {half} along axis {k}: a particle would meet two images of another"
+                        ),
                     ));
                 }
             }

@@ -238,7 +238,11 @@ impl<const D: usize> Blocks<D> {
 
 /// The two largest squares of displacements from `before` to `now`, nearest images.
 #[inline(always)]
-pub(crate) fn largest_moves<const D: usize>(image: &NearestImage<D>, before: &[[Lanes<f64>; D]], now: &[[Lanes<f64>; D]]) -> [f64; 2] {
+pub(crate) fn largest_moves<const D: usize>(
+    image: &NearestImage<D>,
+    before: &[[Lanes<f64>; D]],
+    now: &[[Lanes<f64>; D]],
+) -> [f64; 2] {
     let mut first = [0.0; LANES];
     let mut second = [0.0; LANES];
     for (before, now) in before.iter().zip(now) {

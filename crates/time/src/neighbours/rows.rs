@@ -211,7 +211,6 @@ fn keep_near<const D: usize, const IMAGE: bool>(
     kept.truncate(start + count);
 }
 
-
 /// The blocks of `range`, which lie in order along a column, that overlap `low..high`.
 #[inline(always)]
 fn overlap<const D: usize>(

@@ -73,7 +73,11 @@ const LATER: [[bool; LANES]; LANES] = {
 
 /// Vectors from `r` to the particles of a block, and their squares.
 #[inline(always)]
-fn arrows<const D: usize, const IMAGE: bool>(image: &NearestImage<D>, r: &[f64; D], there: &[Lanes<f64>; D]) -> ([[f64; LANES]; D], [f64; LANES]) {
+fn arrows<const D: usize, const IMAGE: bool>(
+    image: &NearestImage<D>,
+    r: &[f64; D],
+    there: &[Lanes<f64>; D],
+) -> ([[f64; LANES]; D], [f64; LANES]) {
     let mut arrow = [[0.0; LANES]; D];
     let mut r_squared = [0.0; LANES];
     for k in 0..D {
@@ -147,10 +151,28 @@ fn add_forces<L: Law, const D: usize, const LEVELS: usize, const IMAGE: bool>(
         }
         let species = blocks.species[block][lane];
         let mut total = [[NONE; D]; LEVELS];
-        meet::<L, D, LEVELS, IMAGE>(pairs, quanta, (&r, species), block, later(lane, own), &mut force[block], &mut total, &mut most);
+        meet::<L, D, LEVELS, IMAGE>(
+            pairs,
+            quanta,
+            (&r, species),
+            block,
+            later(lane, own),
+            &mut force[block],
+            &mut total,
+            &mut most,
+        );
         for &other in row {
             let other = other as usize;
-            meet::<L, D, LEVELS, IMAGE>(pairs, quanta, (&r, species), other, [true; LANES], &mut force[other], &mut total, &mut most);
+            meet::<L, D, LEVELS, IMAGE>(
+                pairs,
+                quanta,
+                (&r, species),
+                other,
+                [true; LANES],
+                &mut force[other],
+                &mut total,
+                &mut most,
+            );
         }
         recoil(&mut force[block], lane, &total);
     }
