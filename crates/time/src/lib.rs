@@ -22,6 +22,8 @@
 
 // An axis or a lane indexes several arrays at once; zipped iterators of five arrays read worse.
 #![allow(clippy::needless_range_loop)]
+// What a kernel calls must end up inside the function that has the instruction set, or it is not compiled for it.
+#![allow(clippy::inline_always)]
 
 mod constraint;
 mod engine;

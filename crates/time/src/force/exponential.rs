@@ -5,7 +5,7 @@
 #[inline(always)]
 pub(super) fn exp(x: f64) -> f64 {
     const ROUND: f64 = 6_755_399_441_055_744.0; // 1.5 * 2^52: what is added to it loses its fraction
-    const LN_2_HIGH: f64 = 0.693_147_180_369_123_816_49; // so few bits that multiples of it are exact
+    const LN_2_HIGH: f64 = 0.693_147_180_369_123_8; // so few bits that multiples of it are exact
     const LN_2_LOW: f64 = 1.908_214_929_270_587_7e-10;
     let kept = if x > -708.0 { x } else { -708.0 };
     let kept = if kept < 709.0 { kept } else { 709.0 };

@@ -1,5 +1,8 @@
 //! The sums over pairs: forces, energy and virial, a particle against a block of others at a time.
 
+// A condition without `&&` is a mask; what a kernel accumulates stays apart so that it stays in registers.
+#![allow(clippy::needless_bitwise_bool, clippy::too_many_arguments)]
+
 use crate::exact::{BITS, Quantum};
 use crate::image::NearestImage;
 use crate::instructions::Kernel;
