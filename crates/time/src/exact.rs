@@ -82,7 +82,9 @@ mod tests {
         assert!((value(forwards) - plain).abs() < bound, "{} {plain}", value(forwards));
         random.shuffle(&mut terms);
         assert_eq!(sum(&terms), forwards);
-        terms.iter_mut().for_each(|x| *x = -*x);
+        for x in &mut terms {
+            *x = -*x;
+        }
         assert_eq!(sum(&terms), -forwards);
     }
 
