@@ -3,22 +3,33 @@
 mod central;
 mod drag;
 mod drive;
+mod exponential;
+mod force_shifted;
 mod gravity;
+mod harmonic_repulsion;
+mod inverse_power;
 mod lennard_jones;
+mod morse;
 mod pair;
 mod spring;
 mod uniform;
 mod wca;
+mod yukawa;
 
 pub use central::CentralField;
 pub use drag::Drag;
 pub use drive::DrivingForce;
+pub use force_shifted::ForceShifted;
 pub use gravity::{Gravity, TreeGravity};
+pub use harmonic_repulsion::HarmonicRepulsion;
+pub use inverse_power::InversePower;
 pub use lennard_jones::LennardJones;
+pub use morse::Morse;
 pub use pair::{PairForce, PairPotential};
 pub use spring::{Spring, Springs};
 pub use uniform::UniformField;
 pub use wca::WeeksChandlerAndersen;
+pub use yukawa::Yukawa;
 
 use corpuscle_core::{Boundary, Invalid, Particles, Vector};
 

@@ -2,7 +2,8 @@
 //!
 //! A system is a [`Boundary`](corpuscle_core::Boundary), [`Particles`](corpuscle_core::Particles), a list of [`Force`]s
 //! and an [`Integrator`]; [`TimeDriven`] advances it in steps of time. A new force is one file with its acceleration and
-//! its energy; a new short-range potential ([`PairPotential`]) gets neighbour lists, the virial and the checks for free.
+//! its energy; a new short-range potential ([`PairPotential`]) gets neighbour lists, vector
+//! instructions, threads, the virial and the checks for free.
 //!
 //! ```
 //! use corpuscle_core::{Axis, Boundary, Engine, Particles, Vector};
@@ -21,11 +22,12 @@
 
 // An axis or a lane indexes several arrays at once; zipped iterators of five arrays read worse.
 #![allow(clippy::needless_range_loop)]
-// Kernels must end up inside the function that is compiled for an instruction set.
+// What a kernel calls must end up inside the function that has the instruction set, or it is not compiled for it.
 #![allow(clippy::inline_always)]
 
 mod constraint;
 mod engine;
+mod exact;
 pub mod force;
 mod image;
 mod instructions;
@@ -37,8 +39,8 @@ mod system;
 pub use constraint::{Drive, Pin, Signal};
 pub use engine::TimeDriven;
 pub use force::{
-    CentralField, Drag, DrivingForce, Force, Gravity, LennardJones, PairForce, PairPotential, Spring, Springs, TreeGravity,
-    UniformField, WeeksChandlerAndersen,
+    CentralField, Drag, DrivingForce, Force, ForceShifted, Gravity, HarmonicRepulsion, InversePower, LennardJones, Morse,
+    PairForce, PairPotential, Spring, Springs, TreeGravity, UniformField, WeeksChandlerAndersen, Yukawa,
 };
 pub use integrator::Integrator;
 pub use neighbours::Neighbours;

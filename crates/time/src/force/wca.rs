@@ -34,11 +34,16 @@ impl PairPotential for WeeksChandlerAndersen {
         self.whole.sigma
     }
 
-    fn energy(&self, r_squared: f64) -> f64 {
-        self.whole.uncut(r_squared) + self.whole.epsilon
+    fn depth(&self) -> f64 {
+        self.whole.epsilon
     }
 
-    #[inline]
+    #[inline(always)]
+    fn energy(&self, r_squared: f64) -> f64 {
+        self.whole.energy(r_squared) + self.whole.epsilon
+    }
+
+    #[inline(always)]
     fn force_over_distance(&self, r_squared: f64) -> f64 {
         self.whole.force_over_distance(r_squared)
     }

@@ -1,0 +1,265 @@
+//! Particles sorted in space, in blocks of neighbours: the memory order of pair forces.
+
+use corpuscle_core::{Axis, Boundary, Vector};
+
+use crate::image::NearestImage;
+
+/// Particles in a block.
+pub(crate) const LANES: usize = 4;
+
+/// One number of each particle of a block, aligned as vector instructions like it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(32))]
+pub(crate) struct Lanes<T>(pub(crate) [T; LANES]);
+
+impl<T> std::ops::Index<usize> for Lanes<T> {
+    type Output = T;
+
+    #[inline(always)]
+    fn index(&self, lane: usize) -> &T {
+        &self.0[lane]
+    }
+}
+
+impl<T> std::ops::IndexMut<usize> for Lanes<T> {
+    #[inline(always)]
+    fn index_mut(&mut self, lane: usize) -> &mut T {
+        &mut self.0[lane]
+    }
+}
+
+/// Where the first place without a particle lies, and how far they are from one another: out of reach of everything, for the
+/// square is infinite.
+const NOWHERE: f64 = 1e200;
+/// What stands in for a particle's index at such places.
+pub(crate) const NOBODY: u32 = u32::MAX;
+
+/// Positions in blocks of [`LANES`] particles that are near each other.
+///
+/// Space is divided into columns along the last axis, about as wide as a block is long; the particles of a column are
+/// sorted along it and cut into blocks (Pall and Hess 2013, doi:10.1016/j.cpc.2013.06.003).
+#[derive(Clone, Debug)]
+pub(crate) struct Blocks<const D: usize> {
+    /// Positions, block after block.
+    pub(crate) position: Vec<[Lanes<f64>; D]>,
+    /// Species, block after block.
+    pub(crate) species: Vec<[u16; LANES]>,
+    /// Index of the particle at each place; [`NOBODY`] where there is none.
+    pub(crate) particle: Vec<u32>,
+    /// Place of each particle.
+    pub(crate) place: Vec<u32>,
+    pub(crate) columns: Columns<D>,
+}
+
+/// Columns along the last axis.
+#[derive(Clone, Debug)]
+pub(crate) struct Columns<const D: usize> {
+    lower: [f64; D],
+    scale: [f64; D],
+    /// Columns along each axis; one along the last.
+    counts: [usize; D],
+    wraps: [bool; D],
+    /// Blocks of column `c` are `starts[c]..starts[c + 1]`.
+    pub(crate) starts: Vec<u32>,
+}
+
+impl<const D: usize> Columns<D> {
+    fn new(boundary: &Boundary<D>, position: &[Vector<D>]) -> Self {
+        // Along an open axis the columns span the particles; along the others, the box.
+        let (mut lower, mut upper) = (boundary.lower, boundary.upper);
+        for k in (0..D).filter(|&k| boundary.axes[k] == Axis::Open) {
+            lower[k] = position.iter().map(|r| r[k]).fold(f64::INFINITY, f64::min);
+            upper[k] = position.iter().map(|r| r[k]).fold(f64::NEG_INFINITY, f64::max);
+        }
+        let sides: [f64; D] = std::array::from_fn(|k| (upper[k] - lower[k]).max(f64::MIN_POSITIVE));
+        // A block as long as a column is wide: LANES particles in width^D, at the mean density. No more columns along an
+        // axis than particles, whatever their spread.
+        let most = position.len() as f64;
+        let blocks = (most / LANES as f64).max(1.0);
+        let mean = libm::pow(sides.iter().map(|side| side / sides[0]).product::<f64>() / blocks, 1.0 / D as f64) * sides[0];
+        let mut counts = [1; D];
+        let mut left = blocks;
+        for k in 0..D.saturating_sub(1) {
+            counts[k] = (sides[k] / mean).round().clamp(1.0, left.max(1.0)) as usize;
+            left /= counts[k] as f64;
+        }
+        Self {
+            lower: lower.0,
+            scale: std::array::from_fn(|k| counts[k] as f64 / sides[k]),
+            counts,
+            wraps: std::array::from_fn(|k| boundary.axes[k] == Axis::Periodic),
+            starts: vec![],
+        }
+    }
+
+    fn number(&self) -> usize {
+        self.counts.iter().product()
+    }
+
+    /// The column a point is in; the nearest one for points outside.
+    fn of(&self, r: Vector<D>) -> usize {
+        (0..D - 1).rev().fold(0, |column, k| {
+            let slot = (((r[k] - self.lower[k]) * self.scale[k]) as usize).min(self.counts[k] - 1);
+            column * self.counts[k] + slot
+        })
+    }
+
+    /// Calls `visit` once with every column, numbered `first` or higher, that comes within `reach` of the region from `low`
+    /// to `high`: with its number, whether the way there leads through a periodic face, and how far its blocks may be from
+    /// the region along the last axis, squared.
+    #[inline(always)]
+    pub(crate) fn for_each_near(
+        &self,
+        low: &[f64; D],
+        high: &[f64; D],
+        reach: f64,
+        first: usize,
+        mut visit: impl FnMut(usize, bool, f64),
+    ) {
+        // Slots along each axis: from where, and how many; in a ring smaller than the region, each once.
+        let (mut from, mut span, mut all) = ([0i64; D], [1i64; D], [false; D]);
+        for k in 0..D - 1 {
+            let count = self.counts[k] as i64;
+            let slot = |x: f64| ((x - self.lower[k]) * self.scale[k]).floor().clamp(-1e9, 1e9) as i64;
+            let (mut start, mut end) = (slot(low[k] - reach), slot(high[k] + reach));
+            if !self.wraps[k] {
+                (start, end) = (start.clamp(0, count - 1), end.clamp(0, count - 1));
+            }
+            all[k] = end - start + 1 > count;
+            (from[k], span[k]) = if all[k] { (0, count) } else { (start, end - start + 1) };
+        }
+        for mut number in 0..span.iter().product() {
+            let (mut column, mut stride, mut wrapped, mut room) = (0, 1, false, reach * reach);
+            for k in 0..D - 1 {
+                let (count, slot) = (self.counts[k] as i64, from[k] + number % span[k]);
+                number /= span[k];
+                wrapped |= all[k] || !(0..count).contains(&slot);
+                column += slot.rem_euclid(count) * stride;
+                stride *= count;
+                if !all[k] {
+                    // Particles outside the space the columns share are in the outermost ones.
+                    let ends = (!self.wraps[k] && slot == 0, !self.wraps[k] && slot == count - 1);
+                    let left = if ends.0 { f64::NEG_INFINITY } else { self.lower[k] + slot as f64 / self.scale[k] };
+                    let right = if ends.1 { f64::INFINITY } else { self.lower[k] + (slot + 1) as f64 / self.scale[k] };
+                    let gap = (left - high[k]).max(low[k] - right).max(0.0);
+                    room -= gap * gap;
+                }
+            }
+            if column as usize >= first && room > 0.0 {
+                visit(column as usize, wrapped, room);
+            }
+        }
+    }
+}
+
+impl<const D: usize> Blocks<D> {
+    pub(crate) fn empty() -> Self {
+        let columns = Columns { lower: [0.0; D], scale: [1.0; D], counts: [1; D], wraps: [false; D], starts: vec![0] };
+        Self { position: vec![], species: vec![], particle: vec![], place: vec![], columns }
+    }
+
+    /// Sorts the particles.
+    pub(crate) fn sorted(boundary: &Boundary<D>, places: &[Vector<D>]) -> Self {
+        let mut columns = Columns::new(boundary, places);
+        let of: Vec<u32> = places.iter().map(|&r| columns.of(r) as u32).collect();
+        let mut ends = vec![0u32; columns.number() + 1];
+        for &column in &of {
+            ends[column as usize + 1] += 1;
+        }
+        for column in 1..ends.len() {
+            ends[column] += ends[column - 1];
+        }
+        let mut next = ends.clone();
+        let mut members = vec![(0.0, 0u32); places.len()];
+        for (i, (&column, r)) in of.iter().zip(places).enumerate() {
+            let slot = &mut next[column as usize];
+            members[*slot as usize] = (r[D - 1], i as u32);
+            *slot += 1;
+        }
+        let mut particle = Vec::with_capacity(places.len() + columns.number() * LANES);
+        columns.starts.push(0);
+        for bounds in ends.windows(2) {
+            let column = &mut members[bounds[0] as usize..bounds[1] as usize];
+            column.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+            particle.extend(column.iter().map(|&(_, i)| i));
+            particle.resize(particle.len().next_multiple_of(LANES), NOBODY);
+            columns.starts.push((particle.len() / LANES) as u32);
+        }
+        let mut place = vec![0; places.len()];
+        for (number, &i) in particle.iter().enumerate() {
+            if i != NOBODY {
+                place[i as usize] = number as u32;
+            }
+        }
+        let nowhere = |block: usize| Lanes(std::array::from_fn(|lane| NOWHERE * (1 + block * LANES + lane) as f64));
+        let position = (0..particle.len() / LANES).map(|block| [nowhere(block); D]).collect();
+        let species = vec![[0; LANES]; particle.len() / LANES];
+        let mut blocks = Self { position, species, particle, place, columns };
+        blocks.load(places);
+        blocks
+    }
+
+    /// Takes over positions, in the present order.
+    pub(crate) fn load(&mut self, position: &[Vector<D>]) {
+        for (block, particles) in self.position.iter_mut().zip(self.particle.chunks_exact(LANES)) {
+            for (lane, &i) in particles.iter().enumerate() {
+                if i != NOBODY {
+                    let r = position[i as usize];
+                    for k in 0..D {
+                        block[k][lane] = r[k];
+                    }
+                }
+            }
+        }
+    }
+
+    /// Takes over species.
+    pub(crate) fn load_species(&mut self, species: &[u16]) {
+        for (block, particles) in self.species.iter_mut().zip(self.particle.chunks_exact(LANES)) {
+            for (kind, &i) in block.iter_mut().zip(particles).filter(|(_, i)| **i != NOBODY) {
+                *kind = species[i as usize];
+            }
+        }
+    }
+
+    /// Lower and upper corner of a block's box.
+    pub(crate) fn bounds(&self, block: usize) -> ([f64; D], [f64; D]) {
+        let real = |lane: &usize| self.particle[block * LANES + lane] != NOBODY;
+        let lanes = (0..LANES).filter(real).count();
+        let axis = |k: usize| {
+            let x = &self.position[block][k].0[..lanes]; // places without a particle are the last ones
+            let low = x.iter().fold(f64::INFINITY, |a, &b| a.min(b));
+            let high = x.iter().fold(f64::NEG_INFINITY, |a, &b| a.max(b));
+            (low, high)
+        };
+        (std::array::from_fn(|k| axis(k).0), std::array::from_fn(|k| axis(k).1))
+    }
+}
+
+/// The two largest squares of displacements from `before` to `now`, nearest images.
+#[inline(always)]
+pub(crate) fn largest_moves<const D: usize>(
+    image: &NearestImage<D>,
+    before: &[[Lanes<f64>; D]],
+    now: &[[Lanes<f64>; D]],
+) -> [f64; 2] {
+    let mut first = [0.0; LANES];
+    let mut second = [0.0; LANES];
+    for (before, now) in before.iter().zip(now) {
+        let mut moved = [0.0; LANES];
+        for k in 0..D {
+            for lane in 0..LANES {
+                let d = image.component(k, now[k][lane] - before[k][lane]);
+                moved[lane] += d * d;
+            }
+        }
+        for lane in 0..LANES {
+            let smaller = if moved[lane] > first[lane] { first[lane] } else { moved[lane] };
+            first[lane] = if moved[lane] > first[lane] { moved[lane] } else { first[lane] };
+            second[lane] = if smaller > second[lane] { smaller } else { second[lane] };
+        }
+    }
+    let mut all: Vec<f64> = first.into_iter().chain(second).collect();
+    all.sort_unstable_by(f64::total_cmp);
+    [all[2 * LANES - 1], all[2 * LANES - 2]]
+}

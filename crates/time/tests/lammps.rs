@@ -1,0 +1,108 @@
+//! The same fluid in LAMMPS: same start, exported by us and read by it; energies and pressures step by step.
+//!
+//! Runs where LAMMPS is installed: the environment variable `LAMMPS` names the program, otherwise `lmp` is tried.
+
+#![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests are tests
+
+use std::fmt::Write as _;
+use std::process::Command;
+
+use corpuscle_core::{Boundary, Engine, Particles, Random, Vector, placement};
+use corpuscle_time::{Integrator, LennardJones, PairForce, PairPotential, TimeDriven, WeeksChandlerAndersen};
+
+const DT: f64 = 0.005;
+const STEPS: usize = 20;
+
+/// Relative to the sum of the sizes of an energy's or a pressure's two parts, kinetic and potential. Both programs round
+/// forces to about 1e-12; an exponent of 1 a time unit and 0.1 time units leave them there.
+const AGREEMENT: f64 = 1e-9;
+
+fn melted<const D: usize>(count: usize, density: f64, temperature: f64, potential: impl PairPotential + 'static) -> TimeDriven<D> {
+    let boundary = Boundary::periodic(libm::pow(count as f64 / density, 1.0 / D as f64));
+    let mut random = Random::new(11, 0);
+    let mut particles = Particles::new();
+    for place in placement::lattice(&boundary, count, 0.0, &mut random, |_| true).unwrap() {
+        particles.push(place, Vector::ZERO, 1.0, 0.5, 0);
+    }
+    placement::maxwell(&mut particles, temperature, true, &mut random);
+    let forces = || -> Vec<Box<dyn corpuscle_time::Force<D>>> { vec![Box::new(PairForce::new(potential).unshifted())] };
+    let mut fluid = TimeDriven::new(boundary.clone(), particles, forces(), Integrator::VelocityVerlet { dt: DT }).unwrap();
+    fluid.advance(2.0, &mut ()).unwrap();
+    TimeDriven::new(boundary, fluid.snapshot(), forces(), Integrator::VelocityVerlet { dt: DT }).unwrap()
+}
+
+fn program() -> Option<String> {
+    let name = std::env::var("LAMMPS").unwrap_or_else(|_| "lmp".into());
+    Command::new(&name).arg("-help").output().is_ok_and(|output| output.status.success()).then_some(name)
+}
+
+/// Kinetic and potential energy and pressure after each step, as LAMMPS finds them.
+fn lammps<const D: usize>(program: &str, fluid: &TimeDriven<D>, cutoff: f64) -> Vec<[f64; 3]> {
+    let (particles, side) = (fluid.particles(), fluid.boundary().extent());
+    let mut data = format!("start\n\n{} atoms\n1 atom types\n", particles.len());
+    for (k, axis) in ["x", "y", "z"].iter().enumerate() {
+        let (low, high) = if k < D { (0.0, side[k]) } else { (-0.5, 0.5) };
+        writeln!(data, "{low:?} {high:?} {axis}lo {axis}hi").unwrap();
+    }
+    data += "\nMasses\n\n1 1.0\n\nAtoms # atomic\n\n";
+    for (i, r) in particles.position.iter().enumerate() {
+        let [x, y, z] = r.to_three();
+        writeln!(data, "{} 1 {x:?} {y:?} {z:?}", i + 1).unwrap();
+    }
+    data += "\nVelocities\n\n";
+    for (i, v) in particles.velocity.iter().enumerate() {
+        let [x, y, z] = v.to_three();
+        writeln!(data, "{} {x:?} {y:?} {z:?}", i + 1).unwrap();
+    }
+    let input = format!(
+        "units lj\ndimension {D}\natom_style atomic\nread_data data.txt\npair_style lj/cut {cutoff:?}\npair_coeff 1 1 1.0 1.0\n\
+         neighbor 0.3 bin\nneigh_modify every 1 delay 0 check yes\nfix 1 all nve\ntimestep {DT}\n\
+         thermo 1\nthermo_style custom step ke pe press\nthermo_modify norm no format float %.17g\nrun {STEPS}\n"
+    );
+    let folder = std::env::temp_dir().join(format!("corpuscle-lammps-{}-{D}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(folder.join("data.txt"), data).unwrap();
+    std::fs::write(folder.join("in.txt"), input).unwrap();
+    let output = Command::new(program).args(["-in", "in.txt", "-log", "none"]).current_dir(&folder).output().unwrap();
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.status.success(), "{text}");
+    std::fs::remove_dir_all(&folder).unwrap();
+    let rows = text.lines().skip_while(|line| !line.trim_start().starts_with("Step")).skip(1);
+    let numbers = |line: &str| line.split_whitespace().map(str::parse::<f64>).collect::<Result<Vec<_>, _>>().ok();
+    rows.map_while(numbers).filter(|row| row.len() == 4).map(|row| [row[1], row[2], row[3]]).collect()
+}
+
+fn compare<const D: usize>(mut fluid: TimeDriven<D>, cutoff: f64) {
+    let Some(program) = program() else {
+        println!("LAMMPS is not installed: nothing compared");
+        return;
+    };
+    let theirs = lammps(&program, &fluid, cutoff);
+    assert_eq!(theirs.len(), STEPS + 1);
+    let volume = fluid.boundary().volume();
+    for (step, [kinetic, potential, pressure]) in theirs.into_iter().enumerate() {
+        fluid.advance(step as f64 * DT, &mut ()).unwrap();
+        let ideal = 2.0 * fluid.kinetic_energy() / (D as f64 * volume);
+        let excess = fluid.virial() / (D as f64 * volume);
+        let off = [
+            (fluid.kinetic_energy() - kinetic).abs() / kinetic,
+            (fluid.potential_energy() - potential).abs() / potential.abs(),
+            (ideal + excess - pressure).abs() / (ideal.abs() + excess.abs()),
+        ];
+        println!("step {step}: relative differences {off:?}");
+        assert!(off.iter().all(|&off| off < AGREEMENT), "step {step}: {off:?}");
+    }
+}
+
+#[test]
+fn a_lennard_jones_melt_goes_the_same_way_in_lammps() {
+    let potential = LennardJones { epsilon: 1.0, sigma: 1.0, cutoff: 2.5 };
+    compare(melted::<3>(500, 0.8442, 1.44, potential), potential.cutoff);
+}
+
+#[test]
+fn soft_discs_go_the_same_way_in_lammps() {
+    // Not shifted in LAMMPS: its energy is lower by one for each pair within range, as is the plain Lennard-Jones here.
+    let cutoff = WeeksChandlerAndersen::new(1.0, 1.0).cutoff();
+    compare(melted::<2>(400, 0.6, 1.0, LennardJones { epsilon: 1.0, sigma: 1.0, cutoff }), cutoff);
+}
