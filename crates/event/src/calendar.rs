@@ -299,6 +299,11 @@ impl Calendar {
         }
     }
 
+    /// Particles it has room for.
+    pub(crate) fn len(&self) -> usize {
+        self.entries.len()
+    }
+
     /// Bytes held.
     pub(crate) fn memory(&self) -> usize {
         self.entries.capacity() * size_of::<Entry>() + (self.ranks.capacity() + self.heads.capacity()) * size_of::<u32>()

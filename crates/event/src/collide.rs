@@ -82,7 +82,7 @@ impl<const D: usize> EventDriven<D> {
     /// Counts contacts at the same instant: in an inelastic collapse the clock stops.
     #[inline]
     pub(crate) fn count_stuck(&mut self, i: usize) {
-        self.plans[i].stuck = if self.flights[i].time == self.now { self.plans[i].stuck.saturating_add(1) } else { 0 };
+        self.plans[i].stuck = if self.flights[i].time >= self.now { self.plans[i].stuck.saturating_add(1) } else { 0 };
     }
 
     #[inline(always)]

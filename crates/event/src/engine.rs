@@ -35,7 +35,7 @@ use crate::{Counts, Rules};
 /// A search through the whole neighbourhood of `i` makes `P(i) <= T(i, j)` for all `j`; whenever the state of a particle
 /// changes, it is searched for. So after the later of the last changes of `i` and `j` the inequality holds, for the
 /// one that changed then. Later on `P(i)` changes without a change of `i` in two cases only: at a step into another
-/// cell the new neighbours may lower it; and when the event comes up but its partner has changed meanwhile (its stamp
+/// cell the new neighbours may lower it; and when the event comes up but its partner has changed meanwhile (its own time
 /// tells), the neighbourhood is searched again, with the same `T(i, j)`. Particles that are no neighbours cannot touch
 /// before one of them steps into another cell, and are then tested. Hence no pair passes its `T(i, j)` unnoticed,
 /// although each particle stores a single event and nothing is ever deleted from other plans.
@@ -253,9 +253,17 @@ impl<const D: usize> EventDriven<D> {
     }
 
     /// Brings a particle to the present: a change of its state, so only for events that change it anyway.
+    ///
+    /// Its own time always grows, if only by the last bit where it changes several times at one instant: from it others
+    /// see that its flight has changed.
     #[inline]
     pub(crate) fn settle(&mut self, i: usize) {
-        self.flights[i].bring_to(self.now, self.rules.field);
+        let flight = &mut self.flights[i];
+        let before = flight.time;
+        flight.bring_to(self.now, self.rules.field);
+        if before >= self.now {
+            flight.time = before.next_up();
+        }
     }
 
     /// Brings a particle that is beyond a periodic face back into the box; says whether it was.
@@ -391,7 +399,7 @@ impl<const D: usize> EventDriven<D> {
             };
             let contact = if plan.pair.time == time {
                 let partner = plan.pair.neighbour;
-                if self.plans[partner.slot()].stamp != plan.pair_stamp {
+                if self.flights[partner.slot()].time != plan.since {
                     self.replace_stale::<L>(i);
                     continue;
                 }

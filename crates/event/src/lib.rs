@@ -25,6 +25,8 @@ mod calendar;
 mod collide;
 mod engine;
 mod grown;
+#[doc(hidden)]
+pub mod kernels;
 mod lanes;
 mod law;
 mod motion;

@@ -6,9 +6,9 @@ use crate::search::Meet;
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(crate) struct Plan {
-    /// Its earliest collision, if the partner's stamp is still `pair_stamp`.
+    /// Its earliest collision, if the partner's own time is still `since`: then its flight has not changed.
     pub(crate) pair: Meet,
-    pub(crate) pair_stamp: u32,
+    pub(crate) since: f64,
     /// When it touches the fixed surface of index `surface`.
     pub(crate) surface_time: f64,
     /// When it leaves its cell, or its box.
@@ -27,7 +27,7 @@ impl Plan {
     pub(crate) fn idle(id: usize, mass: f64) -> Self {
         Self {
             pair: Meet::NEVER,
-            pair_stamp: 0,
+            since: 0.0,
             surface_time: f64::INFINITY,
             exit_time: f64::INFINITY,
             exit: Exit(0),

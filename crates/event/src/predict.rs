@@ -77,10 +77,11 @@ impl<const D: usize> EventDriven<D> {
     /// What rounding puts into the past happens now.
     #[inline]
     fn keep(&mut self, i: usize, found: Meet) {
-        let stamp = self.plans.get(found.neighbour.slot()).map_or(0, |plan| plan.stamp);
+        // From the line of memory that the search has just read.
+        let since = self.flights.get(found.neighbour.slot()).map_or(0.0, |flight| flight.time);
         let plan = &mut self.plans[i];
         let time = if found.time < self.now { self.now } else { found.time };
-        (plan.pair, plan.pair_stamp) = (Meet { time, ..found }, stamp);
+        (plan.pair, plan.since) = (Meet { time, ..found }, since);
     }
 
     /// The partner of the event that came up has collided with another meanwhile.
@@ -200,6 +201,7 @@ impl<const D: usize> EventDriven<D> {
         lists.move_box(i, place, &self.images, &mut self.candidates);
         if wrapped {
             // A change of state, if only by rounding.
+            self.settle(i);
             self.stamp(i);
             self.plan::<L>(i);
         } else {
