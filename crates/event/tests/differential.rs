@@ -7,7 +7,7 @@ mod reference;
 
 use std::ops::ControlFlow;
 
-use common::{dense_system, random_system};
+use common::{dense_system, random_system, system_of_sizes};
 use corpuscle_core::{Boundary, Contact, Engine, Meeting, Observer, Particles};
 use corpuscle_event::{EventDriven, Rules};
 use reference::{Event, Reference};
@@ -127,4 +127,17 @@ fn dense_discs_collide_in_the_same_order() {
 #[test]
 fn dense_spheres_collide_in_the_same_order() {
     compare_all::<3>(0..10, dense_system);
+}
+
+/// Found in several grids.
+#[test]
+fn discs_of_all_sizes_collide_in_the_same_order() {
+    let compared = compare_all::<2>(0..200, system_of_sizes);
+    assert!(compared.pairs > 1000 && compared.plain_faces > 1000);
+}
+
+#[test]
+fn spheres_of_all_sizes_collide_in_the_same_order() {
+    let compared = compare_all::<3>(0..100, system_of_sizes);
+    assert!(compared.pairs > 1000 && compared.plain_faces > 1000);
 }

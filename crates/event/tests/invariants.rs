@@ -6,7 +6,7 @@ mod common;
 
 use std::ops::ControlFlow;
 
-use common::{Record, StopAfter, dense_system, largest_overlap, random_system, same_bits};
+use common::{Record, StopAfter, dense_system, largest_overlap, random_system, same_bits, system_of_sizes};
 use corpuscle_core::{Axis, Boundary, Contact, Engine, Meeting, Observer, Particles, Vector};
 use corpuscle_event::{EventDriven, Rules};
 use proptest::prelude::*;
@@ -179,6 +179,18 @@ proptest! {
     fn reversed_dense_discs_return(seed in any::<u64>()) { returns_when_reversed::<2>(dense_system(seed)); }
     #[test]
     fn reversed_dense_spheres_return(seed in any::<u64>()) { returns_when_reversed::<3>(dense_system(seed)); }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(60) })]
+    #[test]
+    fn discs_of_all_sizes_hold_their_invariants(seed in any::<u64>()) { holds_its_invariants::<2>(system_of_sizes(seed)); }
+    #[test]
+    fn spheres_of_all_sizes_hold_their_invariants(seed in any::<u64>()) { holds_its_invariants::<3>(system_of_sizes(seed)); }
+    #[test]
+    fn stopping_discs_of_all_sizes_leaves_no_trace(seed in any::<u64>()) { stops_leave_no_trace::<2>(system_of_sizes(seed)); }
+    #[test]
+    fn stopping_spheres_of_all_sizes_leaves_no_trace(seed in any::<u64>()) { stops_leave_no_trace::<3>(system_of_sizes(seed)); }
 }
 
 /// What the tests of dense systems rely on.

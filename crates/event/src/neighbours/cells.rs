@@ -184,12 +184,14 @@ fn cell_width<const D: usize>(boundary: &Boundary<D>, radii: &[f64]) -> f64 {
             continue;
         }
         previous = radius;
-        let small = m as f64 + 1.0;
         let width = (2.0 * radius * MARGIN).max((OCCUPANCY * volume / bodies(m + 1)).powf(1.0 / f64::from(d)));
+        // Cells that are wide to be occupied hold particles beyond the border as well.
+        let fit = sorted.partition_point(|&radius| 2.0 * radius * MARGIN <= width);
+        let small = fit as f64;
         let in_cell = small * width.powi(d) / volume;
         let mut work = small * 3f64.powi(d) * (0.3 + in_cell);
-        let stride = 1 + (sorted.len() - m) / 64;
-        for &big in sorted[m + 1..].iter().step_by(stride) {
+        let stride = 1 + (sorted.len() - fit) / 64;
+        for &big in sorted[fit..].iter().step_by(stride) {
             // The cells at its surface, for each of its collisions, and looked at by the small ones in them.
             let cells = 2.0 * f64::from(d) * (2.0 * big / width + 1.0).powi(d - 1);
             work += stride as f64 * cells * ((big / width + 1.0).powi(d - 1) * (0.3 + in_cell) + in_cell);
@@ -199,4 +201,155 @@ fn cell_width<const D: usize>(boundary: &Boundary<D>, radii: &[f64]) -> f64 {
         }
     }
     best.1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::search::{Images, Neighbour, opposite};
+    use corpuscle_core::{Axis, Random};
+
+    /// Spheres at random places, and cells over them.
+    struct System<const D: usize> {
+        boundary: Boundary<D>,
+        flights: Vec<Flight<D>>,
+        cells: Cells<D>,
+        found: Candidates,
+    }
+
+    impl<const D: usize> System<D> {
+        /// Radii over a factor of 100, evenly in the logarithm.
+        fn new(seed: u64) -> Self {
+            let mut random = Random::new(seed, 0);
+            let mut boundary = Boundary::<D>::new([0.0; D], std::array::from_fn(|_| 4.0 + 2.0 * random.uniform()), Axis::Walls);
+            for axis in &mut boundary.axes {
+                *axis = [Axis::Walls, Axis::Periodic][random.below(2) as usize];
+            }
+            let flights: Vec<_> = (0..150)
+                .map(|_| Flight {
+                    position: Vector::from_fn(|k| boundary.upper[k] * random.uniform()),
+                    time: 0.0,
+                    velocity: Vector::ZERO,
+                    radius: 0.8 * 100f64.powf(-random.uniform()),
+                })
+                .collect();
+            let cells = Cells::new(&boundary, &flights, 1.0, |i| flights[i].position);
+            assert!(cells.levels.len() > 1, "one class for radii over a factor of 100");
+            Self { boundary, flights, cells, found: Candidates::default() }
+        }
+
+        fn collect(&mut self, i: usize) -> Vec<u32> {
+            self.cells.collect(i, &mut self.found);
+            self.found.found().to_vec()
+        }
+
+        /// All in touch with one, each in its image. Places are random, so some are inside others: those which no motion
+        /// can bring about do not count.
+        fn touching(&self, i: usize) -> Vec<Neighbour> {
+            let images = Images::new(self.boundary.extent());
+            let mut touching = vec![];
+            for j in (0..self.flights.len()).filter(|&j| j != i) {
+                let (me, other) = (self.flights[i], self.flights[j]);
+                for image in 0..3u8.pow(D as u32) {
+                    let neighbour = Neighbour::new(j as u32, image);
+                    let shift = images.shift(neighbour);
+                    let exists = (0..D).all(|k| shift[k] == 0.0 || self.boundary.axes[k] == Axis::Periodic);
+                    let distance = (other.position + shift - me.position).norm();
+                    if exists && me.radius.max(other.radius) <= distance && distance <= me.radius + other.radius {
+                        touching.push(neighbour);
+                    }
+                }
+            }
+            touching
+        }
+
+        /// Every pair in touch is found from both sides; answers how many of different classes there are.
+        fn check(&mut self) -> usize {
+            let found: Vec<Vec<u32>> = (0..self.flights.len()).map(|i| self.collect(i)).collect();
+            let mut mixed = 0;
+            for i in 0..self.flights.len() {
+                for neighbour in self.touching(i) {
+                    let j = neighbour.slot();
+                    let back = Neighbour::new(i as u32, opposite::<D>(neighbour.image() as u8));
+                    assert!(found[i].contains(&neighbour.word()), "{i} does not find {j} in image {}", neighbour.image());
+                    assert!(found[j].contains(&back.word()), "{j} does not find {i} in image {}", back.image());
+                    mixed += usize::from(self.cells.class(i) < self.cells.class(j));
+                }
+            }
+            mixed
+        }
+
+        /// Moves a particle straight to the next face between cells, of whatever grid, and over it; says whether there is
+        /// one. What touches it then has been found before the step or is found by it.
+        fn step(&mut self, i: usize, axis: usize, up: bool) -> bool {
+            let faces = (0..self.cells.levels(i)).map(|level| (level, self.cells.face(i, level, axis, up)));
+            // The nearest; the box has its faces in all grids.
+            let (level, (face, around)) = faces
+                .min_by(|(_, (a, _)), (_, (b, _))| if up { a.total_cmp(b) } else { b.total_cmp(a) })
+                .unwrap_or((0, (f64::INFINITY, false)));
+            if face.is_infinite() {
+                return false;
+            }
+            let exit = Exit::new(level, axis, up, around);
+            let mut known = self.collect(i);
+            self.cells.step(i, exit);
+            let (lower, upper) = (self.boundary.lower[axis], self.boundary.upper[axis]);
+            self.flights[i].position[axis] = match (around, up) {
+                (false, _) => face,
+                (true, true) => lower,
+                (true, false) => upper,
+            };
+            if around {
+                // All neighbours are seen in other images from there: everything is searched again.
+                known = self.collect(i);
+            } else {
+                self.cells.collect_new(i, exit, &mut self.found);
+                known.extend_from_slice(self.found.found());
+            }
+            for neighbour in self.touching(i) {
+                assert!(known.contains(&neighbour.word()), "{i} misses {} after {exit:?}", neighbour.slot());
+            }
+            true
+        }
+    }
+
+    /// Answers how many pairs of different classes have been in touch.
+    fn every_pair_in_touch_is_found<const D: usize>(seed: u64) -> usize {
+        let mut system = System::<D>::new(seed);
+        let mut mixed = system.check();
+        let mut random = Random::new(seed, 1);
+        let mut steps = 0;
+        for _ in 0..20 {
+            for _ in 0..100 {
+                let i = random.below(system.flights.len() as u32) as usize;
+                steps += usize::from(system.step(i, random.below(D as u32) as usize, random.below(2) == 0));
+            }
+            mixed += system.check();
+        }
+        assert!(steps > 1000, "{steps} steps");
+        mixed
+    }
+
+    #[test]
+    fn discs_of_several_classes_in_touch_are_found_from_both_sides() {
+        assert!((0..10).map(every_pair_in_touch_is_found::<2>).sum::<usize>() > 1000);
+    }
+
+    #[test]
+    fn spheres_of_several_classes_in_touch_are_found_from_both_sides() {
+        assert!((0..10).map(every_pair_in_touch_is_found::<3>).sum::<usize>() > 1000);
+    }
+
+    /// Radii spread a little, in a dilute gas: cells as fine as for equal ones.
+    #[test]
+    fn a_spread_of_radii_costs_no_coarse_cells() {
+        fn check<const D: usize>(side: f64) {
+            let (mut random, boundary) = (Random::new(5, 0), Boundary::<D>::periodic(side));
+            let radii: Vec<f64> = (0..1000).map(|_| 0.5 + 0.5 * random.uniform()).collect();
+            let particles = radii.len() as f64 * cell_width(&boundary, &radii).powi(D as i32) / boundary.volume();
+            assert!(particles < 1.0, "{particles} in a cell");
+        }
+        check::<2>(200.0);
+        check::<3>(50.0);
+    }
 }

@@ -168,6 +168,40 @@ pub(crate) fn dense_system<const D: usize>(seed: u64) -> (Boundary<D>, Particles
     (boundary, particles, rules)
 }
 
+/// A random system whose radii and masses are spread evenly in the logarithm over a factor of 1000, as many as fit: any mix
+/// of faces, small ones in every corner that large ones leave.
+pub(crate) fn system_of_sizes<const D: usize>(seed: u64) -> (Boundary<D>, Particles<D>, Rules<D>) {
+    let mut random = Random::new(seed, 4);
+    let mut boundary = Boundary::<D>::new([0.0; D], std::array::from_fn(|_| 3.0 + 2.0 * random.uniform()), Axis::Walls);
+    for axis in &mut boundary.axes {
+        *axis = [Axis::Walls, Axis::Periodic][random.below(2) as usize];
+    }
+    let mut radii: Vec<f64> = (0..20).map(|_| 1000f64.powf(-random.uniform())).collect();
+    radii.sort_by(|a, b| b.total_cmp(a));
+    let mut particles = Particles::new();
+    for radius in radii {
+        let mass = 1000f64.powf(random.uniform());
+        for _ in 0..50 {
+            let place = Vector::from_fn(|k| boundary.upper[k] * random.uniform());
+            let mut candidate = particles.clone();
+            candidate.push(place, Vector::from_fn(|_| random.normal() / mass.sqrt()), mass, radius, 0);
+            if boundary.validate_particles(&candidate).is_ok() {
+                particles = candidate;
+                break;
+            }
+        }
+    }
+    // Names say nothing of sizes.
+    let mut order: Vec<usize> = (0..particles.len()).collect();
+    random.shuffle(&mut order);
+    let Particles { position, velocity, mass, radius, .. } = particles;
+    let mut shuffled = Particles::new();
+    for i in order {
+        shuffled.push(position[i], velocity[i], mass[i], radius[i], 0);
+    }
+    (boundary, shuffled, Rules::default())
+}
+
 /// So many points at a temperature, evenly over the places where `keep` allows them.
 pub(crate) fn points<const D: usize>(
     boundary: &Boundary<D>,
