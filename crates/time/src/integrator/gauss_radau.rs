@@ -179,6 +179,10 @@ impl<const D: usize> GaussRadau<D> {
             .iter()
             .zip(&system.acceleration)
             .fold((0.0, 0.0), |(term, scale), (body, &a)| (largest(term, body.b[ORDER - 1]), largest(scale, a)));
+        // Against accelerations; but what does not change the last bit of a velocity is no error. Without that, a kink in a
+        // force (where a potential is cut off) asks for ever shorter steps while all else is at rest.
+        let fastest = self.bodies.iter().fold(0.0, |fastest, body| largest(fastest, body.velocity.value));
+        let scale = scale.max(f64::EPSILON * fastest / (dt * self.tolerance));
         if scale == 0.0 { 0.0 } else { last_term / scale }
     }
 
