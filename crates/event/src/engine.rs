@@ -35,10 +35,11 @@ use crate::{Counts, Rules};
 /// A search through the whole neighbourhood of `i` makes `P(i) <= T(i, j)` for all `j`; whenever the state of a particle
 /// changes, it is searched for. So after the later of the last changes of `i` and `j` the inequality holds, for the
 /// one that changed then. Later on `P(i)` changes without a change of `i` in two cases only: at a step into another
-/// cell the new neighbours may lower it; and when the event comes up but its partner has changed meanwhile (its own time
-/// tells), the neighbourhood is searched again, with the same `T(i, j)`. Particles that are no neighbours cannot touch
-/// before one of them steps into another cell, and are then tested. Hence no pair passes its `T(i, j)` unnoticed,
-/// although each particle stores a single event and nothing is ever deleted from other plans.
+/// cell, or with a new box and list, the new neighbours may lower it; and when the event comes up but its partner has
+/// changed meanwhile (its own time tells), the neighbourhood is searched again, with the same `T(i, j)`. Particles that
+/// are no neighbours cannot touch before one of them steps into another cell or leaves its box, and are then tested.
+/// Hence no pair passes its `T(i, j)` unnoticed, although each particle stores a single event and nothing is ever deleted
+/// from other plans.
 ///
 /// # Reproducibility
 /// Reading particles or stopping at any time never writes their state, and events at equal times are ordered by

@@ -161,7 +161,7 @@ impl State {
             (Pair::Well { range, .. }, None) => {
                 well::next_event(r, v, s, range, self.inside((plans[i].id, plans[j].id), r, range * s)).0
             }
-            (Pair::Hard, None) => crate::motion::contact_delay(r, v, s, f64::INFINITY),
+            (Pair::Hard, None) => crate::motion::contact_delay(r, v, s),
         };
         reference + delay
     }

@@ -9,7 +9,7 @@ pub(crate) struct Plan {
     /// Its earliest collision, if the partner's own time is still `since`: then its flight has not changed.
     pub(crate) pair: Meet,
     pub(crate) since: f64,
-    /// When it touches the fixed surface of index `surface`.
+    /// When it touches a surface: which one the engine notes apart, where there are any.
     pub(crate) surface_time: f64,
     /// When it leaves its cell, or its box.
     pub(crate) exit_time: f64,

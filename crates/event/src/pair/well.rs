@@ -22,9 +22,9 @@ pub(crate) enum Event {
 /// next event, and which. Infinity when there is none.
 pub(crate) fn next_event<const D: usize>(r: Vector<D>, v: Vector<D>, s: f64, range: f64, inside: bool) -> (f64, Event) {
     if !inside {
-        return (contact_delay(r, v, range * s, f64::INFINITY), Event::Entry);
+        return (contact_delay(r, v, range * s), Event::Entry);
     }
-    let core = contact_delay(r, v, s, f64::INFINITY);
+    let core = contact_delay(r, v, s);
     if core < f64::INFINITY { (core, Event::Core) } else { (exit_delay(r, v, range * s), Event::Exit) }
 }
 

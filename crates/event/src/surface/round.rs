@@ -7,7 +7,7 @@ use crate::motion::contact_delay;
 /// First `t >= 0` at which `|r + v t + g t^2 / 2|` falls to `s`; infinity for never.
 pub(super) fn fall_delay<const D: usize>(r: Vector<D>, v: Vector<D>, g: Vector<D>, s: f64) -> f64 {
     if g == Vector::ZERO {
-        return contact_delay(r, v, s, f64::INFINITY);
+        return contact_delay(r, v, s);
     }
     let c = r.norm_squared() - s * s;
     if c <= 0.0 && r.dot(v) < 0.0 {
