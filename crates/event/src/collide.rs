@@ -76,7 +76,7 @@ impl<const D: usize> EventDriven<D> {
     #[inline]
     pub(crate) fn plan_and_schedule<L: Law>(&mut self, i: usize) {
         self.plan::<L>(i);
-        self.calendar.schedule(i as u32, self.plans[i].next_time());
+        self.calendar.schedule(i as u32, self.plans[i].due());
     }
 
     /// Counts contacts at the same instant: in an inelastic collapse the clock stops.

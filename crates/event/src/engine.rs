@@ -6,14 +6,14 @@ use std::ops::ControlFlow;
 use corpuscle_core::{Axis, Boundary, Contact, Engine, Failure, Invalid, Observer, Particles, Vector};
 
 use crate::calendar::Calendar;
-use crate::lanes::prefetch;
 use crate::law::{Law, under_its_law};
 use crate::motion::Flight;
 use crate::neighbours::{Candidates, Neighbours};
 use crate::order::place_on_curve;
+use crate::pages::with_large_pages;
 use crate::pair::{Growth, State};
 use crate::piston::MovingPiston;
-use crate::plan::Plan;
+use crate::plan::{Plan, due};
 use crate::search::{Images, Instructions, Neighbour};
 use crate::surface::Surfaces;
 use crate::{Counts, Rules};
@@ -23,7 +23,7 @@ use crate::{Counts, Rules};
 /// # How it works
 /// Each particle is *lazy*: it is stored as it was at its own last contact, and moved only when the next one comes.
 /// Its plan holds its earliest collision with another particle, its next contact with a wall, and when it leaves its
-/// cell; a calendar queue of one entry a particle tells whose plan is due. A step is `O(1)` in the number of particles.
+/// cell; a calendar queue tells whose plan is due. A step is `O(1)` in the number of particles.
 ///
 /// # Why no collision is lost
 /// The predicted time `T(i, j)` of a pair is a function of the two stored states alone, symmetric in `i` and `j` to the
@@ -74,8 +74,8 @@ pub struct EventDriven<const D: usize> {
     pub(crate) time: f64,
     pub(crate) counts: Counts,
     next_epoch: u64,
-    /// The last day of the calendar that was got ready for.
-    ready: u64,
+    /// The last month of the calendar that memory was asked for.
+    pub(crate) asked_for: u64,
     /// When partitions and faces are going to go, the next one last; and when the last one went.
     removals: Vec<f64>,
     removed: f64,
@@ -90,9 +90,6 @@ pub(crate) struct Body<const D: usize> {
 
 /// A particle may have this many contacts at one instant before the clock counts as stalled.
 const STUCK: u16 = 10_000;
-
-/// More particles than this are more than a processor's inner caches hold.
-const LARGE: usize = 8_000;
 
 impl<const D: usize> EventDriven<D> {
     /// An engine at time 0.
@@ -180,7 +177,7 @@ impl<const D: usize> EventDriven<D> {
             time: 0.0,
             counts: Counts::default(),
             next_epoch: 0,
-            ready: 0,
+            asked_for: 0,
         };
         engine.next_epoch = engine.contacts_per_epoch();
         engine.count_thermal_contacts();
@@ -346,48 +343,13 @@ impl<const D: usize> EventDriven<D> {
         self.begin_anew();
     }
 
-    /// Asks for what the events of the coming days will need, in steps, since each step tells where the next one is. So a
-    /// large system does not wait for its memory.
-    #[inline]
-    fn get_ready(&mut self) {
-        let today = self.calendar.day();
-        // After a leap only the last days matter.
-        for day in self.ready.max(today.saturating_sub(4)) + 1..=today {
-            self.calendar.prefetch(day + 8);
-            self.calendar.scout(day + 6, |i| {
-                if i >= self.plans.len() {
-                    return;
-                }
-                prefetch(&self.plans, i);
-                prefetch(&self.flights, i);
-                self.neighbours.prefetch_place(i);
-            });
-            self.calendar.scout(day + 4, |i| {
-                // Behind the particles is the piston.
-                let Some(plan) = self.plans.get(i) else { return };
-                let partner = plan.pair.neighbour.slot();
-                prefetch(&self.plans, partner);
-                prefetch(&self.flights, partner);
-                self.neighbours.prefetch_place(partner);
-                self.neighbours.prefetch_around(i, &self.flights);
-            });
-            self.calendar.scout(day + 2, |i| {
-                let partner = self.plans.get(i).map_or(usize::MAX, |plan| plan.pair.neighbour.slot());
-                if partner < self.flights.len() {
-                    self.neighbours.prefetch_around(partner, &self.flights);
-                }
-            });
-        }
-        self.ready = today;
-    }
-
     fn run<L: Law>(&mut self, to: f64, observer: &mut impl Observer<D>) -> Result<ControlFlow<()>, Failure> {
-        let large = self.flights.len() > LARGE;
-        while let Some((time, i)) = self.calendar.take(to - self.epoch) {
+        let large = self.is_large();
+        while let Some((time, i)) = self.calendar.take(to - self.epoch, due(&self.plans, self.piston.as_ref())) {
             self.now = time;
             let i = i as usize;
             if large {
-                self.get_ready();
+                self.ask_for_what_is_coming();
             }
             let Some(plan) = self.plans.get(i) else {
                 // Behind the particles: the piston.
@@ -466,7 +428,9 @@ fn removals<const D: usize>(boundary: &Boundary<D>, now: f64) -> Vec<f64> {
 
 /// Puts items into an order.
 fn arrange<T: Copy>(items: &mut Vec<T>, order: &[(u64, u32)]) {
-    *items = order.iter().map(|&(_, i)| items[i as usize]).collect();
+    let mut arranged = with_large_pages(items.len());
+    arranged.extend(order.iter().map(|&(_, i)| items[i as usize]));
+    *items = arranged;
 }
 
 /// The largest power of two not above a positive normal number: its exponent with an empty mantissa.

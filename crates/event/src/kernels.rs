@@ -33,6 +33,7 @@ pub fn step<const D: usize>(engine: &mut EventDriven<D>, i: usize, up: bool) {
 /// A calendar on its own: of as many events, with exponential waits.
 pub struct Queue {
     calendar: Calendar,
+    due: Vec<f64>,
     waits: Vec<f64>,
     taken: usize,
 }
@@ -43,18 +44,22 @@ impl Queue {
         let mut random = Random::new(1, 0);
         let waits: Vec<f64> = (0..65_536).map(|_| -libm::log(random.uniform())).collect();
         let mut calendar = Calendar::new(particles);
-        calendar.fill(0.0, (0..particles as u32).map(|i| (waits[i as usize % waits.len()], i)));
-        Self { calendar, waits, taken: 0 }
+        let due: Vec<f64> = waits.iter().copied().cycle().take(particles).collect();
+        calendar.fill(0.0, |i| (due[i as usize], i));
+        Self { calendar, due, waits, taken: 0 }
     }
 
     /// Takes the earliest event and schedules another, and moves the event of a second particle.
     pub fn step(&mut self) {
-        if let Some((now, i)) = self.calendar.take(f64::MAX) {
+        let due = &mut self.due;
+        if let Some((now, i)) = self.calendar.take(f64::MAX, |i| (due[i as usize], i)) {
             self.taken += 1;
             let wait = |number: usize| self.waits[number % self.waits.len()];
             let (first, second) = (now + wait(self.taken), now + wait(self.taken + 7));
-            self.calendar.schedule(i, first);
-            self.calendar.schedule((i + 1) % self.calendar.len() as u32, second);
+            for (i, time) in [(i, first), ((i + 1) % due.len() as u32, second)] {
+                due[i as usize] = time;
+                self.calendar.schedule(i, (time, i));
+            }
         }
     }
 }

@@ -21,6 +21,7 @@
 //! ```
 
 mod access;
+mod ahead;
 mod calendar;
 mod collide;
 mod engine;
@@ -32,6 +33,7 @@ mod law;
 mod motion;
 mod neighbours;
 mod order;
+mod pages;
 mod pair;
 mod piston;
 mod plan;

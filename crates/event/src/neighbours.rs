@@ -13,6 +13,7 @@ pub(crate) use cells::Cells;
 pub(crate) use lists::Lists;
 
 use crate::motion::Flight;
+use crate::plan::Exit;
 use crate::search::Images;
 
 /// One of the two ways; the density decides.
@@ -37,6 +38,28 @@ impl<const D: usize> Neighbours<D> {
             .map_or_else(|| Self::Cells(Cells::new(boundary, flights, core, &position)), Self::Lists)
     }
 
+    /// What a particle can touch (words), and perhaps some of the particles twice.
+    #[inline]
+    pub(crate) fn candidates<'a>(&'a self, i: usize, found: &'a mut Candidates) -> &'a [u32] {
+        match self {
+            Self::Cells(cells) => {
+                cells.collect(i, found);
+                found.found()
+            }
+            Self::Lists(lists) => lists.neighbours(i).0,
+        }
+    }
+
+    /// What is looked at when a particle will have left its cell or box.
+    #[inline]
+    pub(crate) fn candidates_beyond<'a>(&self, i: usize, exit: Exit, found: &'a mut Candidates) -> &'a [u32] {
+        match self {
+            Self::Cells(cells) => cells.collect_beyond(i, exit, found),
+            Self::Lists(lists) => lists.collect_around(i, found),
+        }
+        found.found()
+    }
+
     /// Asks for the place of a particle.
     #[inline]
     pub(crate) fn prefetch_place(&self, i: usize) {
@@ -46,12 +69,30 @@ impl<const D: usize> Neighbours<D> {
         }
     }
 
-    /// Asks for what a search around a particle reads.
+    /// Asks for what tells the candidates of a particle.
     #[inline]
-    pub(crate) fn prefetch_around(&self, i: usize, flights: &[Flight<D>]) {
+    pub(crate) fn prefetch_around(&self, i: usize) {
         match self {
             Self::Cells(cells) => cells.prefetch_around(i),
-            Self::Lists(lists) => lists.prefetch_neighbours(i, flights),
+            Self::Lists(_) => {}
+        }
+    }
+
+    /// Asks for what tells which particles are beyond a face.
+    #[inline]
+    pub(crate) fn prefetch_beyond(&self, i: usize, exit: Exit) {
+        match self {
+            Self::Cells(cells) => cells.prefetch_beyond(i, exit),
+            Self::Lists(lists) => lists.prefetch_around(i),
+        }
+    }
+
+    /// Asks for the centre of a box.
+    #[inline]
+    pub(crate) fn prefetch_centre(&self, i: usize) {
+        match self {
+            Self::Cells(_) => {}
+            Self::Lists(lists) => lists.prefetch_row(i),
         }
     }
 

@@ -117,7 +117,7 @@ impl MovingPiston {
         self.known[id] == self.stamp
     }
 
-    fn next_time(&self) -> f64 {
+    pub(crate) fn next_time(&self) -> f64 {
         self.candidates.last().map_or(self.horizon, |candidate| candidate.time).min(self.stop_time)
     }
 
@@ -180,7 +180,8 @@ impl<const D: usize> EventDriven<D> {
 
     fn schedule_piston(&mut self) {
         if let Some(time) = self.piston_time() {
-            self.calendar.schedule(self.flights.len() as u32, time);
+            let behind = self.flights.len() as u32;
+            self.calendar.schedule(behind, (time, behind));
         }
     }
 

@@ -1,5 +1,7 @@
 //! What a particle is going to do next.
 
+use crate::calendar::Due;
+use crate::piston::MovingPiston;
 use crate::search::Meet;
 
 /// The next events of one particle: its earliest collision with another, and what it meets alone.
@@ -38,11 +40,25 @@ impl Plan {
         }
     }
 
-    /// Time of the earliest event.
+    /// When its earliest event is due, and its rank among events at the same time.
     #[inline]
-    pub(crate) fn next_time(&self) -> f64 {
+    pub(crate) fn due(&self) -> Due {
+        (self.next_time(), self.id)
+    }
+
+    #[inline]
+    fn next_time(&self) -> f64 {
         let alone = if self.exit_time < self.surface_time { self.exit_time } else { self.surface_time };
         if self.pair.time < alone { self.pair.time } else { alone }
+    }
+}
+
+/// When the next event of each particle is due, and behind the particles that of the piston: what the calendar asks.
+#[inline]
+pub(crate) fn due<'a>(plans: &'a [Plan], piston: Option<&'a MovingPiston>) -> impl Fn(u32) -> Due + use<'a> {
+    move |i| match plans.get(i as usize) {
+        Some(plan) => plan.due(),
+        None => (piston.map_or(f64::INFINITY, MovingPiston::next_time), i),
     }
 }
 

@@ -5,7 +5,7 @@ use crate::law::{Law, Pairs, under_its_law};
 use crate::motion::{Flight, upward_passage};
 use crate::neighbours::Neighbours;
 use crate::pair::State;
-use crate::plan::{Exit, Plan};
+use crate::plan::{Exit, Plan, due};
 use crate::search::{Meet, Neighbour, View, home};
 use corpuscle_core::Vector;
 
@@ -21,8 +21,7 @@ impl<const D: usize> EventDriven<D> {
             under_its_law!(self.plan(i));
         }
         self.search_for_piston();
-        let piston = self.piston_time().map(|time| (time, self.flights.len() as u32));
-        self.calendar.fill(self.now, self.plans.iter().map(|plan| (plan.next_time(), plan.id)).chain(piston));
+        self.calendar.fill(self.now, due(&self.plans, self.piston.as_ref()));
     }
 
     /// The state of a particle has changed: plans all it is going to do.
@@ -89,7 +88,7 @@ impl<const D: usize> EventDriven<D> {
     pub(crate) fn replace_stale<L: Law>(&mut self, i: usize) {
         self.counts.stale += 1;
         self.plan_pair::<L>(i);
-        self.calendar.schedule(i as u32, self.plans[i].next_time());
+        self.calendar.schedule(i as u32, self.plans[i].due());
     }
 
     /// Plans through which face the particle leaves its cell or its box, and when.
@@ -163,7 +162,7 @@ impl<const D: usize> EventDriven<D> {
             Neighbours::Cells(_) => self.leave_cell::<L>(i),
             Neighbours::Lists(_) => self.leave_box::<L>(i),
         }
-        self.calendar.schedule(i as u32, self.plans[i].next_time());
+        self.calendar.schedule(i as u32, self.plans[i].due());
     }
 
     fn leave_cell<L: Law>(&mut self, i: usize) {

@@ -79,7 +79,7 @@ impl<const D: usize> EventDriven<D> {
         }
         self.counts.stale += 1;
         self.plan_surface(i);
-        self.calendar.schedule(i as u32, self.plans[i].next_time());
+        self.calendar.schedule(i as u32, self.plans[i].due());
         None
     }
 

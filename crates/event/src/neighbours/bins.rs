@@ -3,6 +3,7 @@
 use corpuscle_core::{Axis, Boundary, Vector};
 
 use crate::lanes::{LANES, prefetch};
+use crate::pages::filled;
 use crate::search::{Neighbour, home};
 
 pub(crate) const NONE: u32 = u32::MAX;
@@ -149,10 +150,10 @@ impl<const D: usize, const WORDS: usize> Bins<D, WORDS> {
             }),
             cells,
             stride,
-            content: vec![[0; WORDS]; total],
+            content: filled([0; WORDS], total),
             faces,
             first_face,
-            places: vec![Place { next: NONE, cell: [0; D] }; count],
+            places: filled(Place { next: NONE, cell: [0; D] }, count),
             ahead: std::array::from_fn(|k| {
                 [0, 2].map(|layer| around.iter().copied().filter(|way| way.layer[k] == layer).collect())
             }),
@@ -282,14 +283,21 @@ impl<const D: usize, const WORDS: usize> Bins<D, WORDS> {
     /// Moves a particle's place to the next cell along an axis, around a periodic box.
     #[inline]
     pub(crate) fn step(&mut self, i: usize, axis: usize, up: bool) {
+        self.places[i].cell = self.beyond(i, axis, up);
+    }
+
+    /// The cell beyond a face of a particle's.
+    #[inline]
+    pub(crate) fn beyond(&self, i: usize, axis: usize, up: bool) -> [u16; D] {
         let last = (self.cells[axis] - 1) as u16;
-        let cell = &mut self.places[i].cell[axis];
-        *cell = match (up, *cell) {
+        let mut cell = self.places[i].cell;
+        cell[axis] = match (up, cell[axis]) {
             (true, c) if c == last => 0,
             (true, c) => c + 1,
             (false, 0) => last,
             (false, c) => c - 1,
         };
+        cell
     }
 
     /// Puts a particle's place to the other end of the box, after a passage through a periodic face.
@@ -416,12 +424,29 @@ impl<const D: usize, const WORDS: usize> Bins<D, WORDS> {
         prefetch(&self.places, i);
     }
 
-    /// Asks for the cells around a particle's: a row of three lies in one piece.
+    /// Asks for the cell a particle is in.
     #[inline]
-    pub(crate) fn prefetch_around(&self, i: usize) {
-        let index = self.index(self.places[i].cell) as i32;
-        for row in self.around.iter().step_by(3) {
-            prefetch(&self.content, (index + row.step) as usize);
+    pub(crate) fn prefetch_own(&self, i: usize) {
+        prefetch(&self.content, self.index(self.places[i].cell));
+    }
+
+    /// Asks for the cells around a cell: a row of three lies in one piece, of one line or two.
+    #[inline]
+    pub(crate) fn prefetch_around(&self, cell: [u16; D]) {
+        let index = self.index(cell) as i32;
+        for row in self.around.as_chunks::<3>().0 {
+            prefetch(&self.content, (index + row[0].step) as usize);
+            prefetch(&self.content, (index + row[2].step) as usize);
+        }
+    }
+
+    /// Asks for a cell and the layer of cells that is new after a step into it.
+    #[inline]
+    pub(crate) fn prefetch_ahead(&self, cell: [u16; D], axis: usize, up: bool) {
+        let index = self.index(cell) as i32;
+        prefetch(&self.content, index as usize);
+        for way in &self.ahead[axis][usize::from(up)] {
+            prefetch(&self.content, (index + way.step) as usize);
         }
     }
 

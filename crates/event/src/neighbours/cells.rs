@@ -143,12 +143,28 @@ impl<const D: usize> Cells<D> {
 
     #[inline]
     pub(crate) fn prefetch_place(&self, i: usize) {
-        self.levels[0].bins.prefetch_place(i);
+        self.levels[self.class(i)].bins.prefetch_place(i);
     }
 
     #[inline]
     pub(crate) fn prefetch_around(&self, i: usize) {
-        self.levels[0].bins.prefetch_around(i);
+        let bins = &self.levels[self.class(i)].bins;
+        bins.prefetch_around(bins.cell(i));
+    }
+
+    #[inline]
+    pub(crate) fn prefetch_beyond(&self, i: usize, exit: Exit) {
+        let bins = &self.levels[exit.level()].bins;
+        bins.prefetch_own(i);
+        bins.prefetch_ahead(bins.beyond(i, exit.axis(), exit.up()), exit.axis(), exit.up());
+    }
+
+    /// What will become near by a step, among particles of the class whose cell is left.
+    #[inline]
+    pub(crate) fn collect_beyond(&self, i: usize, exit: Exit, found: &mut Candidates) {
+        let bins = &self.levels[exit.level()].bins;
+        found.clear();
+        bins.collect_ahead(bins.beyond(i, exit.axis(), exit.up()), exit.axis(), exit.up(), found);
     }
 
     pub(crate) fn memory(&self) -> usize {

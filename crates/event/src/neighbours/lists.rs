@@ -5,6 +5,7 @@ use corpuscle_core::{Boundary, Vector};
 use super::bins::{Bins, Candidates};
 use crate::lanes::{LANES, prefetch};
 use crate::motion::Flight;
+use crate::pages::filled;
 use crate::search::{Images, Neighbour, home, opposite};
 
 /// For each particle those that it can touch while both stay in their own small boxes.
@@ -188,7 +189,7 @@ impl<const D: usize> Lists<D> {
     #[cold]
     fn widen(&mut self, more: usize, particles: usize) {
         let stride = self.stride + more;
-        let mut rows = vec![0; particles * stride];
+        let mut rows = filled(0, particles * stride);
         for i in 0..particles {
             let row = &mut rows[i * stride..(i + 1) * stride];
             row[HEAD..].fill(Neighbour::new(i as u32, home::<D>()).word());
@@ -205,11 +206,20 @@ impl<const D: usize> Lists<D> {
         prefetch(&self.rows, i * self.stride + 16);
     }
 
+    /// Asks for what a new box will look at: the rows of the neighbours, and the bins around.
     #[inline]
-    pub(crate) fn prefetch_neighbours(&self, i: usize, flights: &[Flight<D>]) {
+    pub(crate) fn prefetch_around(&self, i: usize) {
         for &word in self.neighbours(i).0 {
-            prefetch(flights, Neighbour::from_word(word).slot());
+            self.prefetch_row(Neighbour::from_word(word).slot());
         }
+        self.bins.prefetch_around(self.bins.cell(i));
+    }
+
+    /// All whose boxes may be near.
+    #[inline]
+    pub(crate) fn collect_around(&self, i: usize, found: &mut Candidates) {
+        found.clear();
+        self.bins.collect_around(self.bins.cell(i), found);
     }
 
     pub(crate) fn memory(&self) -> usize {
