@@ -104,9 +104,7 @@ impl<const D: usize> EventDriven<D> {
             2 => self.neighbours.prefetch_beyond(i, exit),
             _ => {
                 for &word in self.neighbours.candidates_beyond(i, exit, &mut self.candidates) {
-                    let j = Neighbour::from_word(word).slot();
-                    prefetch(&self.flights, j);
-                    self.neighbours.prefetch_centre(j);
+                    self.neighbours.prefetch_candidate(Neighbour::from_word(word).slot(), &self.flights);
                 }
             }
         }

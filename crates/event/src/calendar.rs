@@ -194,7 +194,12 @@ impl Calendar {
             self.coming.push(Entry::new(due.0, due.1, i));
         } else if month < self.year_end {
             let slot = self.slot(month);
-            self.months[slot].push(i);
+            let notes = &mut self.months[slot];
+            if notes.len() == notes.capacity() {
+                // Doubled, the lists would be half empty.
+                notes.reserve_exact(notes.len() / 8 + 8);
+            }
+            notes.push(i);
             self.noted += 1;
         } else {
             self.far.push(i);

@@ -12,6 +12,7 @@ pub(crate) use bins::Candidates;
 pub(crate) use cells::Cells;
 pub(crate) use lists::Lists;
 
+use crate::lanes::prefetch;
 use crate::motion::Flight;
 use crate::plan::Exit;
 use crate::search::Images;
@@ -87,12 +88,12 @@ impl<const D: usize> Neighbours<D> {
         }
     }
 
-    /// Asks for the centre of a box.
+    /// Asks for what is read first of a particle that may be beyond a face.
     #[inline]
-    pub(crate) fn prefetch_centre(&self, i: usize) {
+    pub(crate) fn prefetch_candidate(&self, i: usize, flights: &[Flight<D>]) {
         match self {
-            Self::Cells(_) => {}
-            Self::Lists(lists) => lists.prefetch_row(i),
+            Self::Cells(_) => prefetch(flights, i),
+            Self::Lists(lists) => lists.prefetch_centre(i),
         }
     }
 

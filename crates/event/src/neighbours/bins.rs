@@ -92,6 +92,12 @@ impl Candidates {
         self.list[number] = word;
     }
 
+    /// Keeps the first of them only.
+    #[inline]
+    pub(crate) fn truncate(&mut self, count: usize) {
+        self.count = count;
+    }
+
     #[inline]
     pub(crate) fn found(&self) -> &[u32] {
         &self.list[..self.count]

@@ -16,10 +16,14 @@ use crate::search::{Images, Neighbour, home, opposite};
 /// complete and symmetric.
 #[derive(Clone, Debug)]
 pub(crate) struct Lists<const D: usize> {
-    /// For each particle a row: [`HEAD`] words with the centre of its box and the number of neighbours, then these,
-    /// then the particle itself up to the end of the row: a candidate that is never met.
+    /// For each particle a row: the number of neighbours, then these, then the particle itself up to the end of the row: a
+    /// candidate that is never met.
     rows: Vec<u32>,
     stride: usize,
+    /// The centres of the boxes, in single precision: they are where they are put.
+    centres: Vec<[f32; D]>,
+    /// Which of the old neighbours are neighbours of a new box as well.
+    kept: Vec<[u32; LANES]>,
     /// Half the side of a particle's box.
     half: f64,
     /// Boxes closer than this, squared, make neighbours.
@@ -27,7 +31,8 @@ pub(crate) struct Lists<const D: usize> {
     bins: Bins<D, 8>,
 }
 
-const HEAD: usize = 4;
+/// Words of a row before the neighbours.
+const HEAD: usize = 1;
 
 /// Half the side of a box, in units of the largest diameter. Measured: docs/performance.md.
 const fn half_side<const D: usize>() -> f64 {
@@ -66,29 +71,29 @@ impl<const D: usize> Lists<D> {
         let (contact, half) = Self::fit(boundary, flights)?;
         let reach = contact * (1.0 + 1e-6);
         let bins = Bins::new(boundary, reach + 2.0 * half, flights.len(), 8.0 * flights.len() as f64 + 64.0);
-        let mut lists = Self { rows: vec![], stride: HEAD, half, reach: reach * reach, bins };
-        lists.widen(if D == 2 { 8 } else { 12 }, flights.len());
+        let (rows, kept, centres) = (vec![], vec![], filled([0.0; D], flights.len()));
+        let mut lists = Self { rows, stride: 0, centres, kept, half, reach: reach * reach, bins };
+        lists.widen(HEAD + if D == 2 { 8 } else { 16 }, flights.len());
         for i in 0..flights.len() {
             lists.set_centre(i, position(i));
             lists.bins.insert(i);
         }
         for i in 0..flights.len() {
-            lists.join(i, images, found, |j| j < i);
+            lists.find_near(i, images, found);
+            for &word in found.found() {
+                lists.push(i, Neighbour::from_word(word));
+            }
         }
         Some(lists)
     }
 
     #[inline]
     pub(crate) fn centre(&self, i: usize) -> Vector<D> {
-        let row = &self.rows[i * self.stride..];
-        Vector::from_fn(|k| f64::from(f32::from_bits(row[k])))
+        Vector(self.centres[i].map(f64::from))
     }
 
     fn set_centre(&mut self, i: usize, r: Vector<D>) {
-        let row = &mut self.rows[i * self.stride..];
-        for k in 0..D {
-            row[k] = (r[k] as f32).to_bits();
-        }
+        self.centres[i] = r.0.map(|x| x as f32);
         let centre = self.centre(i);
         self.bins.locate(i, self.bins.cell_of(centre));
     }
@@ -107,82 +112,108 @@ impl<const D: usize> Lists<D> {
     #[inline]
     pub(crate) fn neighbours(&self, i: usize) -> (&[u32], bool) {
         let row = &self.rows[i * self.stride..(i + 1) * self.stride];
-        let (count, images) = unpack(row[COUNT]);
-        (&row[HEAD..HEAD + count.next_multiple_of(LANES)], images != 0)
+        let (count, images) = unpack(row[0]);
+        (&row[HEAD..][..count.next_multiple_of(LANES)], images != 0)
     }
 
     /// The coordinate of a face of a particle's box.
     #[inline]
     pub(crate) fn face(&self, i: usize, axis: usize, up: bool) -> f64 {
-        let centre = f64::from(f32::from_bits(self.rows[i * self.stride + axis]));
-        centre + if up { self.half } else { -self.half }
+        f64::from(self.centres[i][axis]) + if up { self.half } else { -self.half }
     }
 
     /// Gives a particle a new box around where it is now, and the neighbours that come with it.
     pub(crate) fn move_box(&mut self, i: usize, r: Vector<D>, images: &Images<D>, found: &mut Candidates) {
-        let row = i * self.stride;
-        let (count, _) = unpack(self.rows[row + COUNT]);
-        for at in row + HEAD..row + HEAD + count {
-            self.remove(Neighbour::from_word(self.rows[at]), i);
-        }
-        self.rows[row + COUNT] = 0;
-        self.rows[row + HEAD..row + self.stride].fill(Neighbour::new(i as u32, home::<D>()).word());
         self.bins.remove(i);
         self.set_centre(i, r);
         self.bins.insert(i);
-        self.join(i, images, found, |j| j != i);
+        self.find_near(i, images, found);
+        self.part(i, found);
+        for &word in found.found() {
+            let other = Neighbour::from_word(word);
+            self.push(i, other);
+            self.push(other.slot(), Neighbour::new(i as u32, opposite::<D>(other.image() as u8)));
+        }
     }
 
-    /// Makes neighbours of a particle and all others whose boxes are near.
-    fn join(&mut self, i: usize, images: &Images<D>, found: &mut Candidates, wanted: impl Fn(usize) -> bool) {
-        found.clear();
-        self.bins.collect_around(self.bins.cell(i), found);
+    /// All others whose boxes are near.
+    fn find_near(&self, i: usize, images: &Images<D>, found: &mut Candidates) {
+        self.collect_around(i, found);
         let centre = self.centre(i);
-        let count = found.found().len();
         let mut near = 0;
-        for number in 0..count {
+        for number in 0..found.found().len() {
             let word = found.found()[number];
             let other = Neighbour::from_word(word);
             let r = self.centre(other.slot()) - centre + images.shift(other);
             let gap = Vector::<D>::from_fn(|k| (r[k].abs() - 2.0 * self.half).max(0.0));
             // Kept or overwritten by the next: without a branch, since either is likely.
             found.put(near, word);
-            near += usize::from((gap.norm_squared() < self.reach) & wanted(other.slot()));
+            near += usize::from((gap.norm_squared() < self.reach) & (other.slot() != i));
         }
-        for number in 0..near {
-            let other = Neighbour::from_word(found.found()[number]);
-            self.push(i, other);
-            self.push(other.slot(), Neighbour::new(i as u32, opposite::<D>(other.image() as u8)));
+        found.truncate(near);
+    }
+
+    /// Ends the neighbourhood with those that are not among the found, and leaves only those of them that are new.
+    ///
+    /// A box moves by a part of its side, so most neighbours stay: their rows are not touched.
+    fn part(&mut self, i: usize, found: &mut Candidates) {
+        let row = i * self.stride;
+        let (count, _) = unpack(self.rows[row]);
+        // Whole blocks, which are compared at once; beyond the count only the particle itself.
+        let blocks = self.rows[row + HEAD..row + self.stride].as_chunks::<LANES>().0;
+        let blocks = &blocks[..count.div_ceil(LANES)];
+        self.kept.clear();
+        self.kept.resize(blocks.len(), [0; LANES]);
+        let mut new = 0;
+        for number in 0..found.found().len() {
+            let word = found.found()[number];
+            let mut known = [0; LANES];
+            for (kept, old) in self.kept.iter_mut().zip(blocks) {
+                for lane in 0..LANES {
+                    let same = u32::from(old[lane] == word);
+                    kept[lane] |= same;
+                    known[lane] |= same;
+                }
+            }
+            found.put(new, word);
+            new += usize::from(known == [0; LANES]);
+        }
+        found.truncate(new);
+        // From the last on, since the last takes the place of one that goes.
+        for at in (0..count).rev() {
+            if self.kept[at / LANES][at % LANES] == 0 {
+                let other = Neighbour::from_word(self.rows[row + HEAD + at]);
+                self.remove(other.slot(), Neighbour::new(i as u32, opposite::<D>(other.image() as u8)));
+                self.remove(i, other);
+            }
         }
     }
 
     #[inline]
     fn push(&mut self, i: usize, neighbour: Neighbour) {
         let row = i * self.stride;
-        let (count, _) = unpack(self.rows[row + COUNT]);
-        if HEAD + count == self.stride {
-            self.widen(LANES * 2, self.rows.len() / self.stride);
+        let (count, _) = unpack(self.rows[row]);
+        if count % LANES == 0 && HEAD + count + LANES > self.stride {
+            self.widen(LANES, self.rows.len() / self.stride);
             return self.push(i, neighbour);
         }
         self.rows[row + HEAD + count] = neighbour.word();
-        self.rows[row + COUNT] += 1 + (u32::from(neighbour.image() != home::<D>() as usize) << 16);
+        self.rows[row] += 1 + (u32::from(neighbour.image() != home::<D>() as usize) << 16);
     }
 
-    /// Takes `i` out of the list of a neighbour, as `i` sees it.
+    /// Takes a neighbour out of the row of a particle.
     #[inline]
-    fn remove(&mut self, neighbour: Neighbour, i: usize) {
-        let image = opposite::<D>(neighbour.image() as u8);
-        let word = Neighbour::new(i as u32, image).word();
-        let start = neighbour.slot() * self.stride;
+    fn remove(&mut self, i: usize, neighbour: Neighbour) {
+        let start = i * self.stride;
         let row = &mut self.rows[start..start + self.stride];
-        let (count, _) = unpack(row[COUNT]);
+        let (count, _) = unpack(row[0]);
         let last = row[HEAD + count - 1];
         // Without a branch: any of them may be the one.
-        for entry in &mut row[HEAD..HEAD + count.next_multiple_of(LANES)] {
-            *entry = if *entry == word { last } else { *entry };
+        for entry in &mut row[HEAD..][..count] {
+            *entry = if *entry == neighbour.word() { last } else { *entry };
         }
-        row[HEAD + count - 1] = Neighbour::new(neighbour.slot() as u32, home::<D>()).word();
-        row[COUNT] -= 1 + (u32::from(image != home::<D>()) << 16);
+        row[HEAD + count - 1] = Neighbour::new(i as u32, home::<D>()).word();
+        row[0] -= 1 + (u32::from(neighbour.image() != home::<D>() as usize) << 16);
     }
 
     /// Makes the rows of all particles longer.
@@ -204,14 +235,18 @@ impl<const D: usize> Lists<D> {
     pub(crate) fn prefetch_row(&self, i: usize) {
         prefetch(&self.rows, i * self.stride);
         prefetch(&self.rows, i * self.stride + 16);
+        prefetch(&self.centres, i);
     }
 
-    /// Asks for what a new box will look at: the rows of the neighbours, and the bins around.
+    /// Asks for the centre of a box.
+    #[inline]
+    pub(crate) fn prefetch_centre(&self, i: usize) {
+        prefetch(&self.centres, i);
+    }
+
+    /// Asks for the bins that a new box will look at.
     #[inline]
     pub(crate) fn prefetch_around(&self, i: usize) {
-        for &word in self.neighbours(i).0 {
-            self.prefetch_row(Neighbour::from_word(word).slot());
-        }
         self.bins.prefetch_around(self.bins.cell(i));
     }
 
@@ -223,12 +258,9 @@ impl<const D: usize> Lists<D> {
     }
 
     pub(crate) fn memory(&self) -> usize {
-        self.rows.capacity() * size_of::<u32>() + self.bins.memory()
+        self.rows.capacity() * size_of::<u32>() + self.centres.capacity() * size_of::<[f32; D]>() + self.bins.memory()
     }
 }
-
-/// Place of the number of neighbours in a row.
-const COUNT: usize = HEAD - 1;
 
 /// How many neighbours there are, and how many of them are periodic images.
 #[inline]
