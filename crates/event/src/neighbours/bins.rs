@@ -42,6 +42,9 @@ struct Way<const D: usize> {
 /// Index contribution of a neighbour that does not exist: it lifts the sum beyond every cell.
 const OUTSIDE: u32 = 1 << 30;
 
+/// What lifts the number of an image above all indices, those of neighbours that do not exist included.
+const IMAGE: u64 = 1 << 40;
+
 /// The particles of a cell, side by side so that they can be copied without looking how many there are; in the last word
 /// how many.
 ///
@@ -353,22 +356,22 @@ impl<const D: usize, const WORDS: usize> Bins<D, WORDS> {
 
     /// At a face of the box: neighbours around periodic faces, none beyond others.
     fn collect_at_border(&self, cell: [u16; D], ways: &[Way<D>], found: &mut Candidates) {
-        let (mut part, mut image) = ([[0; 3]; D], [[0; 3]; D]);
-        let mut digit = 1;
+        // Index and, from `IMAGE` on, image of a neighbour: what each axis adds.
+        let mut part = [[0; 3]; D];
+        let mut digit = IMAGE;
         for k in 0..D {
             let (c, last, stride) = (u32::from(cell[k]), self.cells[k] - 1, self.stride[k]);
             let beyond = |around: u32| if self.axes[k] == Axis::Periodic { around * stride } else { OUTSIDE };
             let down = if c == 0 { beyond(last) } else { (c - 1) * stride };
             let up = if c == last { beyond(0) } else { (c + 1) * stride };
-            part[k] = [down, c * stride, up];
-            image[k] = [if c == 0 { 0 } else { digit }, digit, if c == last { 2 * digit } else { digit }];
+            let turns = [if c == 0 { 0 } else { digit }, digit, if c == last { 2 * digit } else { digit }];
+            part[k] = [u64::from(down) + turns[0], u64::from(c * stride) + turns[1], u64::from(up) + turns[2]];
             digit *= 3;
         }
         for way in ways {
-            let layer = |k: usize| way.layer[k] as usize;
-            let index: u32 = (0..D).map(|k| part[k][layer(k)]).sum();
-            if index < OUTSIDE {
-                let image: u8 = (0..D).map(|k| image[k][layer(k)]).sum();
+            let sum: u64 = (0..D).map(|k| part[k][way.layer[k] as usize]).sum();
+            let (index, image) = (sum % IMAGE, (sum / IMAGE) as u8);
+            if index < u64::from(OUTSIDE) {
                 self.collect_cell(index as usize, away::<D>(image), found);
             }
         }
