@@ -172,8 +172,32 @@ impl<const D: usize> Cells<D> {
     }
 }
 
-/// Mean number of particles in a cell below which finer cells only cost crossings. Measured: docs/performance.md.
-const OCCUPANCY: f64 = 0.5;
+/// The mean number of particles in a cell at which a collision costs least, where cells may be as fine as wanted; for so
+/// many particles of this radius to a unit of volume.
+///
+/// Both particles of a collision, and some more whose partner has changed, look into `3^D` cells; on their mean free path
+/// `1 / (sqrt(2) n A)` (cross-section `A`) they pass faces, and look into `3^(D - 1)` new cells at each. In units of a pair
+/// test, measured: docs/performance.md.
+fn occupancy<const D: usize>(density: f64, radius: f64) -> f64 {
+    /// What looking into a cell costs, a search, and a passage.
+    const CELL: f64 = 0.33;
+    const SEARCH: f64 = 5.0;
+    const PASSAGE: f64 = 22.0;
+    const SEARCHES: f64 = 2.4;
+    let d = D as i32;
+    let (cross_section, passages) = if D == 2 {
+        (4.0 * radius, 2.0 * 2.0 * std::f64::consts::FRAC_2_PI)
+    } else {
+        (4.0 * std::f64::consts::PI * radius * radius, 2.0 * 3.0 * 0.5)
+    };
+    let path = 1.0 / (std::f64::consts::SQRT_2 * density * cross_section);
+    let work = |occupancy: f64| {
+        let width = (occupancy / density).powf(1.0 / f64::from(d));
+        let layer = 3f64.powi(d - 1) * (CELL + occupancy);
+        SEARCHES * (SEARCH + 3.0 * layer) + passages * path / width * (PASSAGE + layer)
+    };
+    [0.5, 0.7, 1.0, 1.4, 2.0].into_iter().min_by(|&a, &b| work(a).total_cmp(&work(b))).unwrap_or(0.5)
+}
 
 /// The cell width with the least estimated work; particles of larger diameter are left to the next class.
 ///
@@ -200,7 +224,8 @@ fn cell_width<const D: usize>(boundary: &Boundary<D>, radii: &[f64]) -> f64 {
             continue;
         }
         previous = radius;
-        let width = (2.0 * radius * MARGIN).max((OCCUPANCY * volume / bodies(m + 1)).powf(1.0 / f64::from(d)));
+        let width = (2.0 * radius * MARGIN)
+            .max((occupancy::<D>(bodies(m + 1) / volume, radius) * volume / bodies(m + 1)).powf(1.0 / f64::from(d)));
         // Cells that are wide to be occupied hold particles beyond the border as well.
         let fit = sorted.partition_point(|&radius| 2.0 * radius * MARGIN <= width);
         let small = fit as f64;
@@ -362,8 +387,8 @@ mod tests {
         fn check<const D: usize>(side: f64) {
             let (mut random, boundary) = (Random::new(5, 0), Boundary::<D>::periodic(side));
             let radii: Vec<f64> = (0..1000).map(|_| 0.5 + 0.5 * random.uniform()).collect();
-            let particles = radii.len() as f64 * cell_width(&boundary, &radii).powi(D as i32) / boundary.volume();
-            assert!(particles < 1.0, "{particles} in a cell");
+            let (width, equal) = (cell_width(&boundary, &radii), cell_width(&boundary, &[1.0; 1000]));
+            assert!(width <= equal, "{width} instead of {equal}");
         }
         check::<2>(200.0);
         check::<3>(50.0);
