@@ -1,7 +1,7 @@
 //! `corpuscle bench` through the real command, on systems so small and short that only its form can be judged, and the
 //! physics that no clock disturbs.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot be set up has failed")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot be set up has failed")]
 
 use std::process::{Command, Output};
 
