@@ -207,6 +207,35 @@ fn systems_that_cannot_be() {
     let two = "[[particle]]\nposition = [1.0, 1.0]\nradius = 0.5\n[[particle]]\nposition = [1.5, 1.0]\nradius = 0.5\n";
     refused_file(&file(two), &["scenario.toml", "particles 0 and 1", "overlapping"]);
     refused_file(&file("[[particle]]\nposition = [nan, 1.0]\nradius = 0.5\n"), &["scenario.toml", "NaN"]);
+    let gas = |rest: &str| file(&format!("[[species]]\ncount = 3\nradius = 0.5\n{rest}"));
+    for (rest, parts) in [
+        (
+            "[[face]]\naxis = 'x'\nside = 'upper'\ntemperature = -2.0\n",
+            ["scenario.toml:13:15", "face[0].temperature = -2", "a positive number"],
+        ),
+        ("[[face]]\naxis = 'x'\nside = 'left'\n", ["scenario.toml:12:8", "left", "one of lower, upper"]),
+        (
+            "[[face]]\naxis = 'x'\nside = 'upper'\ntemprature = 1.0\n",
+            ["scenario.toml:13:1", "temprature", "did you mean `temperature`?"],
+        ),
+        (
+            "[[face]]\naxis = 'x'\nside = 'upper'\npath = [[0.0, 99.0]]\n",
+            ["scenario.toml:13:8", "face[0].path = between 99 and 99", "a motion within the box"],
+        ),
+        (
+            "[[obstacle]]\ncentre = [99.0, 0.0]\nradius = 1.0\n",
+            ["scenario.toml:11:10", "obstacle[0].centre = [99.0, 0.0]", "a place in the box"],
+        ),
+        ("[piston]\naxis = 'x'\nposition = 1.0\nmass = -1.0\n", ["scenario.toml:13:8", "piston.mass = -1", "a positive number"]),
+        (
+            "[collisions]\nwell = { range = 0.5, depth = 1.0 }\n",
+            ["scenario.toml:11:18", "collisions.well.range = 0.5", "a number above 1"],
+        ),
+        ("[collisions.viscoelastic]\nstiffness = 1.0\n", ["scenario.toml:10:1", "(incomplete)", "dissipation_time"]),
+        ("[growth]\nrate = 7.0\n", ["scenario.toml:11:8", "growth.rate = 7", "a number from 0.0001 to 1"]),
+    ] {
+        refused_file(&gas(rest), &parts);
+    }
 }
 
 #[test]

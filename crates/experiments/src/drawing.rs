@@ -1,13 +1,22 @@
-//! What several experiments draw alike: particles of either engine, the box and its partitions.
+//! What several experiments draw alike: particles of either engine, the box and what stands in it.
 
-use corpuscle_core::{Axis, Boundary, Engine, Particles};
+use corpuscle_core::{Axis, Boundary, Engine, Particles, Piston};
 use corpuscle_event::EventDriven;
-use corpuscle_scene::{Body, Camera, Colour, Line, Scene};
+use corpuscle_scene::{Body, Camera, Colour, Label, Line, Scene};
 
 /// Width of a wall on the screen, in points.
 const WALL: f32 = 2.5;
 /// Width of a periodic face, which is no wall: faint and thin.
 const FACE: f32 = 1.0;
+
+/// Colour of walls with a temperature.
+const WARM: Colour = Colour::Accent(1);
+/// Colour of the coldest of them.
+const COLD: Colour = Colour::Accent(0);
+/// Distance of the temperature from its wall, as a part of the box.
+const INSET: f64 = 0.06;
+/// Corners of a circle that looks round.
+const CORNERS: usize = 48;
 
 /// Smallest radius of a particle of a gas on the screen, in points: thin gases need large boxes.
 const SPECK: f32 = 2.2;
@@ -34,7 +43,10 @@ pub(crate) fn add_event_driven<const D: usize>(
             shade: shade(i),
         }
     }));
-    add_boundary(scene, engine.boundary());
+    add_boundary(scene, engine.boundary(), engine.time());
+    if let Some(piston) = engine.piston() {
+        add_piston(scene, engine.boundary(), piston);
+    }
 }
 
 /// Adds particles that are all as of `time`.
@@ -54,21 +66,41 @@ pub(crate) fn add_particles<const D: usize>(
     }));
 }
 
-/// Adds the faces of the box, walls strong and periodic faces faint, and the partitions with their holes; fits the camera.
-pub(crate) fn add_boundary<const D: usize>(scene: &mut Scene, boundary: &Boundary<D>) {
+/// Adds the faces of the box as they are at a time, walls strong, warm ones coloured and with their temperature, periodic
+/// and open faces faint; partitions with their holes; obstacles. Fits the camera to the whole box.
+pub(crate) fn add_boundary<const D: usize>(scene: &mut Scene, boundary: &Boundary<D>, time: f64) {
     let (lower, upper) = (boundary.lower.to_three(), boundary.upper.to_three());
     scene.camera = Camera::fit(lower, upper);
+    let (mut low, mut high) = (lower, upper);
+    for k in (0..D).filter(|&k| boundary.axes[k] == Axis::Walls) {
+        (low[k], high[k]) = (boundary.face_at(k, false, time).0, boundary.face_at(k, true, time).0);
+    }
     let start = scene.lines.len();
-    scene.add_box(lower, upper, WALL, Colour::Wall);
+    scene.add_box(low, high, WALL, Colour::Wall);
     for line in &mut scene.lines[start..] {
         // An edge belongs to the faces across the axes it does not run along; it is a wall when one of those is.
         let along = (0..3).find(|&k| line.from[k] != line.to[k]);
-        if !(0..D).any(|k| Some(k) != along && boundary.axes[k] == Axis::Walls) {
+        let faces = (0..D).filter(|&k| Some(k) != along).map(|k| (k, line.from[k] == high[k]));
+        let walls: Vec<_> = faces.filter(|&(k, upper)| stands(boundary, k, upper, time)).collect();
+        if walls.is_empty() {
             (line.width, line.colour) = (FACE, Colour::Faint);
+        } else if let Some(colour) = walls.iter().find_map(|&(k, upper)| warmth(boundary, k, upper)) {
+            line.colour = colour;
         }
     }
-    for plate in &boundary.partitions {
-        let (mut low, mut high) = (lower, upper);
+    for (k, upper) in (0..D).flat_map(|k| [(k, false), (k, true)]) {
+        if let (Some(temperature), Some(colour)) = (boundary.faces[k][usize::from(upper)].temperature, warmth(boundary, k, upper))
+            && stands(boundary, k, upper, time)
+        {
+            // Inside, where there is always room: a wall may be at the edge of the picture.
+            let share = if k == 0 { INSET } else { 0.5 * INSET };
+            let mut at: [f64; 3] = std::array::from_fn(|axis| 0.5 * (low[axis] + high[axis]));
+            at[k] = if upper { high[k] - share * (high[k] - low[k]) } else { low[k] + share * (high[k] - low[k]) };
+            scene.labels.push(Label { at, text: format!("kT = {temperature}"), colour });
+        }
+    }
+    for plate in boundary.partitions.iter().filter(|plate| plate.stands_at(time)) {
+        let (mut low, mut high) = (low, high);
         (low[plate.axis], high[plate.axis]) = (plate.position, plate.position);
         let strips = match plate.hole {
             None => vec![(low, high)],
@@ -80,15 +112,59 @@ pub(crate) fn add_boundary<const D: usize>(scene: &mut Scene, boundary: &Boundar
             }
         };
         for (from, to) in strips {
-            add_plate(scene, from, to);
+            add_plate(scene, from, to, WALL);
         }
+    }
+    for obstacle in &boundary.obstacles {
+        add_round(scene, obstacle.centre.to_three(), obstacle.radius, D);
+    }
+}
+
+/// Whether there is a wall across an axis at a time.
+fn stands<const D: usize>(boundary: &Boundary<D>, axis: usize, upper: bool, time: f64) -> bool {
+    boundary.axes[axis] == Axis::Walls && boundary.faces[axis][usize::from(upper)].stands_at(time)
+}
+
+/// Colour of a wall with a temperature: that of cold for the coldest, if others are warmer.
+fn warmth<const D: usize>(boundary: &Boundary<D>, axis: usize, upper: bool) -> Option<Colour> {
+    let temperature = boundary.faces[axis][usize::from(upper)].temperature?;
+    let warmer = |other: f64| other > temperature;
+    let colder = |other: f64| other < temperature;
+    let others = || boundary.faces.iter().flatten().filter_map(|face| face.temperature);
+    Some(if others().any(warmer) && !others().any(colder) { COLD } else { WARM })
+}
+
+/// A piston where it is now: a plate twice as thick as a wall.
+fn add_piston<const D: usize>(scene: &mut Scene, boundary: &Boundary<D>, piston: Piston) {
+    let (mut low, mut high) = (boundary.lower.to_three(), boundary.upper.to_three());
+    (low[piston.axis], high[piston.axis]) = (piston.position, piston.position);
+    add_plate(scene, low, high, 2.0 * WALL);
+}
+
+/// A round body: its outline in the plane, three great circles in space.
+fn add_round(scene: &mut Scene, centre: [f64; 3], radius: f64, dimension: usize) {
+    let planes: &[[usize; 2]] = if dimension == 2 { &[[0, 1]] } else { &[[0, 1], [1, 2], [2, 0]] };
+    for &[first, second] in planes {
+        let point = |corner: usize| {
+            let (sine, cosine) = (std::f64::consts::TAU * corner as f64 / CORNERS as f64).sin_cos();
+            let mut point = centre;
+            point[first] += radius * cosine;
+            point[second] += radius * sine;
+            point
+        };
+        scene.lines.extend((0..CORNERS).map(|corner| Line {
+            from: point(corner),
+            to: point(corner + 1),
+            width: WALL,
+            colour: Colour::Wall,
+        }));
     }
 }
 
 /// A plate: a line in the plane, the outline of a rectangle in space.
-fn add_plate(scene: &mut Scene, from: [f64; 3], to: [f64; 3]) {
+fn add_plate(scene: &mut Scene, from: [f64; 3], to: [f64; 3], width: f32) {
     let spans: Vec<usize> = (0..3).filter(|&k| from[k] != to[k]).collect();
-    let mut edge = |a: [f64; 3], b: [f64; 3]| scene.lines.push(Line { from: a, to: b, width: WALL, colour: Colour::Wall });
+    let mut edge = |a: [f64; 3], b: [f64; 3]| scene.lines.push(Line { from: a, to: b, width, colour: Colour::Wall });
     if let [first, second] = spans[..] {
         let (mut along_first, mut along_second) = (from, from);
         along_first[first] = to[first];

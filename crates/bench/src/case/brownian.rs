@@ -11,7 +11,7 @@ use corpuscle_experiments::{Kind, Parameter, Settings};
 use corpuscle_observe::{CollisionRate, theory};
 
 use super::gas;
-use crate::{Case, Clock, Figure, SECONDS, Trouble};
+use crate::{Case, Figure, SECONDS, Trouble};
 
 pub(crate) static CASE: Case = Case {
     name: "brownian",
@@ -38,7 +38,6 @@ pub(crate) static CASE: Case = Case {
         },
         SECONDS,
     ],
-    clock: Clock::Thread,
     run: |settings| if settings.word("dimension") == "2" { run::<2>(settings) } else { run::<3>(settings) },
 };
 

@@ -99,7 +99,7 @@ impl Arguments {
         object.insert("version".into(), json!(env!("CARGO_PKG_VERSION")));
         object.insert("parameters".into(), Value::Object(parameters));
         object.insert("seed".into(), json!(self.settings.seed));
-        object.insert("clock".into(), json!(self.case.clock.name()));
+        object.insert("clock".into(), json!(self.case.clock(&self.settings).name()));
         for figure in figures {
             object.insert(figure.key.into(), json!(figure.value));
             for (of, value) in [("standard_error", figure.standard_error), ("theory", figure.theory)] {
@@ -119,7 +119,7 @@ impl Arguments {
             .iter()
             .map(|(parameter, value)| format!("{} {value}{}", words(parameter.name), unit(parameter)))
             .collect();
-        let _ = writeln!(out, "{}; {}\n", values.join(", "), self.case.clock.name());
+        let _ = writeln!(out, "{}; {}\n", values.join(", "), self.case.clock(&self.settings).name());
         let rows: Vec<Vec<String>> = figures
             .iter()
             .map(|figure| {

@@ -1,17 +1,17 @@
 //! From the description of a free system to an engine, every number checked on the way.
 
-use corpuscle_core::placement::stop_drift;
-use corpuscle_core::{Axis, Boundary, Engine, Failure, Hole, Invalid, Observer, Particles, Partition, Random, Vector};
-use corpuscle_event::{EventDriven, Rules};
+mod boundary;
+mod placement;
+mod rules;
+
+use corpuscle_core::{Boundary, Engine, Failure, Invalid, Observer, Particles, Piston, Vector};
+use corpuscle_event::EventDriven;
 use corpuscle_time::{
     Force, Gravity, Integrator, LennardJones, PairForce, Pin, Spring, Springs, TimeDriven, UniformField, WeeksChandlerAndersen,
 };
 
-use super::spec::{AxisName, EngineKind, Face, Faces, System};
-use crate::gas;
+use super::spec::{AxisName, EngineKind, System};
 
-/// Particles a scenario may ask for: an explicit limit instead of a machine without memory.
-const MOST_PARTICLES: usize = 2_000_000;
 /// Steps a scenario may ask for: more would never end.
 const MOST_STEPS: f64 = 1e12;
 
@@ -45,6 +45,13 @@ impl<const D: usize> AnyEngine<D> {
         }
     }
 
+    pub(super) fn piston(&self) -> Option<Piston> {
+        match self {
+            Self::Event(engine) => engine.piston(),
+            Self::Time(_) => None,
+        }
+    }
+
     pub(super) fn snapshot(&self) -> Particles<D> {
         match self {
             Self::Event(engine) => engine.snapshot(),
@@ -59,10 +66,13 @@ impl<const D: usize> AnyEngine<D> {
         }
     }
 
-    /// Kinetic and potential energy now.
+    /// Kinetic energy of the particles now, and potential energy with all that a piston has.
     pub(super) fn energies(&self) -> (f64, f64) {
         match self {
-            Self::Event(engine) => (engine.kinetic_energy(), engine.potential_energy()),
+            Self::Event(engine) => {
+                let piston = engine.piston().map_or(0.0, |piston| piston.energy());
+                (engine.kinetic_energy(), engine.potential_energy() + piston)
+            }
             Self::Time(engine) => (engine.kinetic_energy(), engine.potential_energy()),
         }
     }
@@ -85,171 +95,28 @@ pub(super) fn build<const D: usize>(system: &System, seed: u64) -> Result<Built<
     if let Some(interval) = system.sample_interval {
         positive("sample_interval", interval)?;
     }
-    let boundary = boundary(system)?;
+    let boundary = boundary::boundary(system)?;
     let mut names: Vec<String> = vec![];
     let mut particles = Particles::<D>::new();
-    let (pins, trails) = place_singles(system, &mut names, &mut particles)?;
-    generate(system, &boundary, seed, &mut names, &mut particles)?;
+    let (pins, trails) = placement::place_singles(system, &mut names, &mut particles)?;
+    placement::generate(system, &boundary, seed, &mut names, &mut particles)?;
     if particles.is_empty() {
         return Err(Invalid::new("particle", 0, "at least one particle, in [[particle]] or [[species]]"));
     }
     let held = pins.iter().flat_map(|pin| pin.axes).filter(|&held| held).count();
     let engine = match system.engine {
-        EngineKind::Event => event_driven(system, boundary, particles),
+        EngineKind::Event => event_driven(system, boundary, particles, seed),
         EngineKind::Time => time_driven(system, boundary, particles, pins),
     };
     Ok(Built { engine: engine.map_err(|error| located(system, error))?, names, trails, held })
 }
 
-fn boundary<const D: usize>(system: &System) -> Result<Boundary<D>, Invalid> {
-    let room = &system.room;
-    let kind = |face: Face| match face {
-        Face::Periodic => Axis::Periodic,
-        Face::Walls => Axis::Walls,
-        Face::Open => Axis::Open,
-    };
-    let (lower, upper): ([f64; D], [f64; D]) = (array("box.lower", &room.lower)?, array("box.upper", &room.upper)?);
-    // The difference counts, too: it is what may overflow, or vanish beside the corners.
-    if (0..D).any(|k| !(upper[k] - lower[k] > 0.0 && (upper[k] - lower[k]).is_finite())) {
-        return Err(Invalid::new("box.lower", format!("{lower:?}"), format!("numbers below those of box.upper, {upper:?}")));
-    }
-    let mut boundary = Boundary::new(lower, upper, Axis::Walls);
-    match &room.faces {
-        Faces::All(face) => boundary.axes = [kind(*face); D],
-        Faces::Each(faces) => {
-            let faces: [Face; D] = faces
-                .clone()
-                .try_into()
-                .map_err(|_| Invalid::new("box.faces", format!("{} words", faces.len()), format!("one word, or {D}")))?;
-            boundary.axes = faces.map(kind);
-        }
-    }
-    for (index, plate) in system.partitions.iter().enumerate() {
-        let key = |field: &str| format!("partition[{index}].{field}");
-        let hole = match &plate.hole {
-            None => None,
-            Some(hole) => Some(Hole { along: axis::<D>(&key("hole.along"), hole.along)?, from: hole.from, to: hole.to }),
-        };
-        boundary.partitions.push(Partition { hole, ..Partition::new(axis::<D>(&key("axis"), plate.axis)?, plate.position) });
-        boundary.validate().map_err(|error| {
-            let field = error.key.strip_prefix("partition ").unwrap_or(&error.key).replace("hole ", "hole.");
-            Invalid { key: key(&field), ..error }
-        })?;
-    }
-    Ok(boundary)
-}
-
-/// Index of a species of this name, added when new.
-fn species(names: &mut Vec<String>, name: &str) -> u16 {
-    let place = names.iter().position(|known| known == name).unwrap_or_else(|| {
-        names.push(name.into());
-        names.len() - 1
-    });
-    u16::try_from(place).unwrap_or(u16::MAX)
-}
-
-type Held<const D: usize> = (Vec<Pin<D>>, Vec<usize>);
-
-fn place_singles<const D: usize>(
+fn event_driven<const D: usize>(
     system: &System,
-    names: &mut Vec<String>,
-    particles: &mut Particles<D>,
-) -> Result<Held<D>, Invalid> {
-    let (mut pins, mut trails) = (vec![], vec![]);
-    for (index, single) in system.particles.iter().enumerate() {
-        let key = |field: &str| format!("particle[{index}].{field}");
-        let velocity = if single.velocity.is_empty() { [0.0; D] } else { array(&key("velocity"), &single.velocity)? };
-        not_negative(&key("mass"), single.mass)?;
-        not_negative(&key("radius"), single.radius)?;
-        let position = array(&key("position"), &single.position)?;
-        let particle = particles.push(Vector(position), Vector(velocity), single.mass, single.radius, species(names, &single.name));
-        if !single.held.is_empty() {
-            let mut axes = [false; D];
-            for &name in &single.held {
-                axes[axis::<D>(&key("held"), name)?] = true;
-            }
-            pins.push(Pin { particle, axes });
-        }
-        if single.trail {
-            trails.push(particle);
-        }
-    }
-    Ok((pins, trails))
-}
-
-fn generate<const D: usize>(
-    system: &System,
-    boundary: &Boundary<D>,
+    boundary: Boundary<D>,
+    particles: Particles<D>,
     seed: u64,
-    names: &mut Vec<String>,
-    particles: &mut Particles<D>,
-) -> Result<(), Invalid> {
-    for (index, group) in system.species.iter().enumerate() {
-        let key = |field: &str| format!("species[{index}].{field}");
-        if group.count == 0 || particles.len().saturating_add(group.count) > MOST_PARTICLES {
-            return Err(Invalid::new(
-                key("count"),
-                group.count,
-                format!("1 or more, and at most {MOST_PARTICLES} particles in all"),
-            ));
-        }
-        positive(&key("mass"), group.mass)?;
-        not_negative(&key("radius"), group.radius)?;
-        not_negative(&key("temperature"), group.temperature)?;
-        let mut region = boundary.clone();
-        region.partitions.clear();
-        if let Some(lower) = &group.lower {
-            region.lower = Vector(array(&key("lower"), lower)?);
-        }
-        if let Some(upper) = &group.upper {
-            region.upper = Vector(array(&key("upper"), upper)?);
-        }
-        for k in 0..D {
-            // What is only a part of the box along an axis has edges there, whatever the faces of the box.
-            if region.lower[k] != boundary.lower[k] || region.upper[k] != boundary.upper[k] || boundary.axes[k] == Axis::Open {
-                region.axes[k] = Axis::Walls;
-            }
-            if region.lower[k] < boundary.lower[k] || region.upper[k] > boundary.upper[k] || region.lower[k] >= region.upper[k] {
-                return Err(Invalid::new(
-                    key("lower"),
-                    format!("{:?} to {:?}", region.lower.0, region.upper.0),
-                    format!("a part of the box, {:?} to {:?}", boundary.lower.0, boundary.upper.0),
-                ));
-            }
-        }
-        let mut random = Random::new(seed, index as u64);
-        let mut fresh = particles.clone();
-        let kind = gas::Species { count: group.count, radius: group.radius, mass: group.mass, index: species(names, &group.name) };
-        gas::add(&mut fresh, &region, kind, &mut random)
-            .map_err(|error| Invalid::new(key("count"), group.count, error.expected))?;
-        let spread = (group.temperature / group.mass).sqrt();
-        for i in particles.len()..fresh.len() {
-            fresh.velocity[i] = Vector::from_fn(|_| spread * random.normal());
-        }
-        *particles = fresh;
-    }
-    if system.particles.is_empty() {
-        to_temperature(system, boundary, particles);
-    }
-    Ok(())
-}
-
-/// Brings what was drawn to exactly the temperature asked for, the mean over the species, and to rest as a whole where
-/// total momentum is conserved. Particles placed by hand keep the velocities they were given, and then so do all.
-fn to_temperature<const D: usize>(system: &System, boundary: &Boundary<D>, particles: &mut Particles<D>) {
-    let count = particles.len();
-    let closed = boundary.conserves_momentum() && count > 1;
-    if closed {
-        stop_drift(particles);
-    }
-    let wanted = system.species.iter().map(|group| group.count as f64 * group.temperature).sum::<f64>() / count as f64;
-    let scale = (wanted / particles.temperature(D * if closed { count - 1 } else { count })).sqrt();
-    if scale.is_finite() {
-        particles.velocity.iter_mut().for_each(|v| *v = *v * scale);
-    }
-}
-
-fn event_driven<const D: usize>(system: &System, boundary: Boundary<D>, particles: Particles<D>) -> Result<AnyEngine<D>, Invalid> {
+) -> Result<AnyEngine<D>, Invalid> {
     let refuse = |key: &str| Err(Invalid::new(key, "given", "nothing: the event-driven engine has none; choose engine = \"time\""));
     if !system.springs.is_empty() {
         return refuse("spring[0]");
@@ -270,12 +137,7 @@ fn event_driven<const D: usize>(system: &System, boundary: Boundary<D>, particle
             "a positive mass: hard particles exchange momentum",
         ));
     }
-    let mut rules = Rules { field: field(system)?, ..Rules::default() };
-    if let Some(collisions) = &system.collisions {
-        (rules.restitution, rules.elastic_below) = (collisions.restitution.into(), collisions.elastic_below);
-    }
-    rules.validate().map_err(|error| Invalid { key: format!("collisions.{}", error.key), ..error })?;
-    Ok(AnyEngine::Event(Box::new(EventDriven::new(boundary, particles, rules)?)))
+    Ok(AnyEngine::Event(Box::new(EventDriven::new(boundary, particles, rules::rules(system, seed)?)?)))
 }
 
 fn time_driven<const D: usize>(
@@ -287,8 +149,14 @@ fn time_driven<const D: usize>(
     if system.collisions.is_some() {
         return Err(Invalid::new("collisions", "given", "nothing: the time-driven engine has none; choose engine = \"event\""));
     }
-    if !system.partitions.is_empty() {
-        return Err(Invalid::new("partition[0]", "given", "nothing: the time-driven engine has none; choose engine = \"event\""));
+    let only_hard = [
+        ("partition[0]", !system.partitions.is_empty()),
+        ("face[0]", !system.walls.is_empty()),
+        ("obstacle[0]", !system.obstacles.is_empty()),
+        ("piston", system.piston.is_some()),
+    ];
+    if let Some((key, _)) = only_hard.into_iter().find(|(_, given)| *given) {
+        return Err(Invalid::new(key, "given", "nothing: the time-driven engine has none; choose engine = \"event\""));
     }
     let Some(stepper) = &system.integrator else {
         return Err(Invalid::new("integrator", "missing", "name and time_step of an integrator, for engine = \"time\""));
@@ -407,6 +275,20 @@ fn located(system: &System, error: Invalid) -> Invalid {
             let key = index(i).zip(index(j)).map(|(i, j)| source(system, i.max(j), "position"));
             let value = format!("{} {}", error.key, error.value);
             return Invalid { key: key.unwrap_or(error.key), value, expected: error.expected };
+        }
+        ["particle", i, "and", "obstacle", j] => {
+            // What is generated keeps clear of them, too.
+            let key = index(i).map(|i| source(system, i, "position"));
+            return Invalid { key: key.unwrap_or(error.key.clone()), value: format!("obstacle[{j}] {}", error.value), ..error };
+        }
+        ["box"] => {
+            let shoulder = system.collisions.as_ref().is_some_and(|collisions| collisions.shoulder.is_some());
+            let key = if shoulder { "collisions.shoulder.range" } else { "collisions.well.range" };
+            let expected = format!("wells that fit into the box, which is {}: {}", error.value, error.expected);
+            let range = system.collisions.as_ref().and_then(|collisions| {
+                collisions.well.as_ref().map(|well| well.range).or(collisions.shoulder.as_ref().map(|shoulder| shoulder.range))
+            });
+            return Invalid::new(key, range.unwrap_or(f64::NAN), expected);
         }
         ["cutoff", "of", ..] => {
             let long = system.forces.as_ref().is_some_and(|forces| forces.lennard_jones.is_some());

@@ -16,6 +16,7 @@ impl<const D: usize> Free<D> {
         if self.observe.contains(&Observable::Temperature) {
             charts.push(self.temperature_chart());
         }
+        charts.extend(self.piston_chart());
         charts.extend(self.pressure_chart());
         charts.extend(self.speed_chart());
         charts.extend(self.structure_chart());
@@ -47,17 +48,33 @@ impl<const D: usize> Free<D> {
         let mut chart = Chart::new("energy", "Energy", Axis::linear("time t", ""), Axis::linear("energy E", ""))
             .with(series("kinetic", |sample| sample.kinetic));
         if self.samples.iter().any(|sample| sample.potential != 0.0) {
+            let rest = if self.engine.piston().is_some() { "potential, and of the piston" } else { "potential" };
             chart = chart
-                .with(series("potential", |sample| sample.potential))
+                .with(series(rest, |sample| sample.potential))
                 .with(series("total", |sample| sample.kinetic + sample.potential));
         }
         chart
     }
 
     fn temperature_chart(&self) -> Chart {
-        Chart::new("temperature", "Temperature", Axis::linear("time t", ""), Axis::linear("temperature k_B T", "")).with(
-            Series::new("kinetic temperature", Style::Line, thin(&self.samples).map(|sample| (sample.time, sample.temperature))),
-        )
+        let measured = thin(&self.samples).map(|sample| (sample.time, sample.temperature));
+        let mut chart = Chart::new("temperature", "Temperature", Axis::linear("time t", ""), Axis::linear("temperature k_B T", ""))
+            .with(Series::new("kinetic temperature", Style::Line, measured));
+        let mut warm: Vec<f64> = self.engine.boundary().faces.iter().flatten().filter_map(|face| face.temperature).collect();
+        warm.sort_by(f64::total_cmp);
+        warm.dedup();
+        let end = self.samples.last().map_or(0.0, |sample| sample.time);
+        for wall in warm {
+            chart = chart.with(Series::theory(format!("walls at {wall}"), 0.0, end, 2, Scale::Linear, move |_| wall));
+        }
+        chart
+    }
+
+    fn piston_chart(&self) -> Option<Chart> {
+        let places = thin(&self.samples).filter_map(|sample| Some((sample.time, sample.piston?)));
+        let measured = Series::new("piston", Style::Line, places);
+        let axes = (Axis::linear("time t", ""), Axis::linear("coordinate of the piston", ""));
+        self.engine.piston().map(|_| Chart::new("piston", "Piston", axes.0, axes.1).with(measured))
     }
 
     fn displacement_chart(&self) -> Option<Chart> {

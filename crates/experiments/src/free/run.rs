@@ -2,7 +2,8 @@
 
 use std::collections::VecDeque;
 
-use corpuscle_core::{Axis as Faces, Engine, Failure, Invalid, Particles, Vector};
+use corpuscle_core::{Engine, Failure, Invalid, Particles, Vector};
+use corpuscle_event::Pair;
 use corpuscle_observe::{Chart, Check, Estimate, Histogram, RadialDistribution, Schedule, VirialPressure, WallPressure};
 use corpuscle_scene::{Colour, Colouring, Line, Scene, TrailPoint};
 
@@ -31,6 +32,8 @@ pub(super) struct Sample {
     pub(super) temperature: f64,
     /// Instantaneous virial pressure of a time-driven system.
     pub(super) pressure: f64,
+    /// Coordinate of the piston, if there is one.
+    pub(super) piston: Option<f64>,
 }
 
 /// A step of a path that is drawn.
@@ -75,6 +78,8 @@ pub(super) struct Free<const D: usize> {
     degrees_of_freedom: usize,
     /// Whether collisions keep energy.
     pub(super) elastic: bool,
+    /// Whether no wall gives or takes energy, by its temperature or its motion.
+    pub(super) isolated: bool,
     /// Whether forces keep energy.
     pub(super) conservative: bool,
     /// Whether nothing takes up momentum: no wall, no field, nothing held.
@@ -104,6 +109,11 @@ impl<const D: usize> Free<D> {
         let massive = particles.mass.iter().filter(|&&mass| mass > 0.0).count();
         let shared = if closed && massive > 1 { D } else { 0 };
         let degrees_of_freedom = (D * massive).saturating_sub(held + shared).max(1);
+        let isolated = boundary.faces.iter().flatten().all(|face| face.temperature.is_none() && face.motion.is_none());
+        let elastic = match &engine {
+            AnyEngine::Event(engine) => engine.rules().restitution.is_elastic(),
+            AnyEngine::Time(_) => true,
+        };
         let expected_samples = system.duration * (1.0 - SETTLED) / interval;
         let mut free = Self {
             title: system.title.clone(),
@@ -132,7 +142,8 @@ impl<const D: usize> Free<D> {
             displacement: vec![],
             start_particles: particles,
             degrees_of_freedom,
-            elastic: system.collisions.as_ref().is_none_or(|collisions| collisions.restitution == 1.0),
+            elastic,
+            isolated,
             conservative: system.springs.iter().all(|bond| bond.damping == 0.0),
             closed,
             field: system.field.clone(),
@@ -152,7 +163,8 @@ impl<const D: usize> Free<D> {
             AnyEngine::Event(_) => f64::NAN,
             AnyEngine::Time(engine) => (particles.len() as f64 * temperature + engine.virial() / D as f64) / volume,
         };
-        self.samples.push(Sample { time, kinetic, potential, temperature, pressure });
+        let piston = self.engine.piston().map(|piston| piston.position);
+        self.samples.push(Sample { time, kinetic, potential, temperature, pressure, piston });
         let moving = particles.velocity.iter().zip(&particles.mass).map(|(v, m)| m * v.norm()).sum();
         self.momentum.see(particles.momentum().to_three(), moving);
         let energy = kinetic + potential;
@@ -253,10 +265,18 @@ impl<const D: usize> Free<D> {
         self.reached >= self.duration
     }
 
-    /// Whether a pressure is one number: no field that layers the system, no open face, no partition.
+    /// Whether a pressure is one number: no field that layers the system, no wall that opens or moves, nothing in the box
+    /// but particles.
     pub(super) fn has_pressure(&self) -> bool {
         let boundary = self.engine.boundary();
-        self.field.iter().all(|&g| g == 0.0) && boundary.partitions.is_empty() && !boundary.axes.contains(&Faces::Open)
+        let empty = boundary.partitions.is_empty() && boundary.obstacles.is_empty() && boundary.piston.is_none();
+        let still = boundary.is_closed() && boundary.faces.iter().flatten().all(|face| face.motion.is_none());
+        self.field.iter().all(|&g| g == 0.0) && empty && still
+    }
+
+    /// Whether particles are hard and keep their temperature: what the virial of collisions is measured under.
+    pub(super) fn keeps_temperature(&self) -> bool {
+        matches!(&self.engine, AnyEngine::Event(engine) if engine.rules().pair == Pair::Hard) && self.elastic && self.isolated
     }
 }
 
@@ -305,7 +325,7 @@ impl<const D: usize> Simulation for Free<D> {
                 // A point mass has no size; it is drawn as a dot, half of which is the picture's two-hundredth.
                 let radius = |i: usize| if particles.radius[i] > 0.0 { particles.radius[i] } else { 0.005 * size };
                 drawing::add_particles(scene, engine.time(), particles, radius, |i| f64::from(particles.species[i]));
-                drawing::add_boundary(scene, engine.boundary());
+                drawing::add_boundary(scene, engine.boundary(), engine.time());
                 for &[first, second] in &self.springs {
                     let from = particles.position[first];
                     let to = from + engine.boundary().displacement(from, particles.position[second]);
@@ -360,7 +380,7 @@ impl<const D: usize> Simulation for Free<D> {
             work_unit,
             largest_overlap,
             energy_drift: match &self.engine {
-                AnyEngine::Event(_) => self.elastic.then(|| self.energy.relative()),
+                AnyEngine::Event(_) => (self.elastic && self.isolated).then(|| self.energy.relative()),
                 AnyEngine::Time(_) => self.conservative.then(|| self.motion.relative()),
             },
             momentum_drift: self.closed.then(|| self.momentum.relative()),

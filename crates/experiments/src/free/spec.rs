@@ -1,5 +1,9 @@
 //! The description of a free system, as a scenario file spells it.
 
+mod walls;
+
+pub use walls::{Cylinder, Grown, Peg, Side, Swing, Wall};
+
 use serde::{Deserialize, Serialize};
 
 /// A system of the user's own: box, particles, interactions, engine, and what to observe for how long.
@@ -22,6 +26,18 @@ pub struct System {
     /// Thin hard plates in the box (event-driven engine).
     #[serde(default, rename = "partition", skip_serializing_if = "Vec::is_empty")]
     pub partitions: Vec<Plate>,
+    /// Walls of the box that are warm, move, or open (event-driven engine).
+    #[serde(default, rename = "face", skip_serializing_if = "Vec::is_empty")]
+    pub walls: Vec<Wall>,
+    /// Fixed round bodies (event-driven engine).
+    #[serde(default, rename = "obstacle", skip_serializing_if = "Vec::is_empty")]
+    pub obstacles: Vec<Peg>,
+    /// A movable plane across the box (event-driven engine).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub piston: Option<Cylinder>,
+    /// How generated particles come to their places: on a lattice when not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub growth: Option<Grown>,
     /// Particles generated in number, without overlap.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub species: Vec<Species>,
@@ -108,6 +124,17 @@ pub enum AxisName {
     Z,
 }
 
+impl AxisName {
+    /// As the file spells it.
+    pub const fn letter(self) -> &'static str {
+        match self {
+            Self::X => "x",
+            Self::Y => "y",
+            Self::Z => "z",
+        }
+    }
+}
+
 /// A thin hard plate.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
@@ -119,6 +146,9 @@ pub struct Plate {
     /// Its opening.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hole: Option<Opening>,
+    /// Physical time from which on it is gone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub removed_at: Option<f64>,
 }
 
 /// An opening in a plate.
@@ -214,12 +244,51 @@ pub struct Bond {
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Collisions {
-    /// Coefficient of restitution, 1 for elastic.
-    #[serde(default = "one")]
-    pub restitution: f64,
+    /// Coefficient of restitution; 1, elastic, when not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub restitution: Option<f64>,
+    /// In its place that of viscoelastic spheres, which depends on the speed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub viscoelastic: Option<Viscoelastic>,
     /// Normal approach speed below which a contact is elastic whatever the restitution, against inelastic collapse.
     #[serde(default)]
     pub elastic_below: f64,
+    /// A square well around each hard core.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub well: Option<Well>,
+    /// A square shoulder around each hard core.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shoulder: Option<Shoulder>,
+}
+
+/// The material of viscoelastic spheres.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Viscoelastic {
+    /// `2 Y / (3 (1 - nu^2))` of Young's modulus and Poisson's ratio.
+    pub stiffness: f64,
+    /// Dissipation over stiffness, a time.
+    pub dissipation_time: f64,
+}
+
+/// A square well.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Well {
+    /// Where it ends, over the contact distance.
+    pub range: f64,
+    /// Energy set free when a pair enters.
+    pub depth: f64,
+}
+
+/// A square shoulder.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Shoulder {
+    /// Where it ends, over the contact distance.
+    pub range: f64,
+    /// Energy a pair needs to enter.
+    pub height: f64,
 }
 
 /// Forces between particles, each of all pairs.

@@ -8,6 +8,9 @@ use proptest::prelude::*;
 use super::*;
 use crate::Action;
 
+mod laws;
+mod walls;
+
 fn read(text: &str) -> System {
     toml::from_str(text).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
@@ -357,7 +360,7 @@ proptest! {
 
     #[test]
     fn no_numbers_make_a_start_panic(
-        base in prop::sample::select(vec![GAS, GAS_3, SOFT, NET]), changes in prop::collection::vec((0..24usize, number()), 1..4),
+        base in prop::sample::select(vec![GAS, GAS_3, SOFT, NET]), changes in prop::collection::vec((0..29usize, number()), 1..4),
         count in prop_oneof![4 => 1..80usize, 1 => any::<usize>()], lower in places(2), place in places(3), end: usize, seed: u64
     ) {
         let mut system = read(base);
@@ -398,7 +401,12 @@ proptest! {
                     }
                 },
                 21 => if let Some(stepper) = &mut system.integrator { stepper.time_step = Some(value); },
-                22 => system.partitions.push(spec::Plate { axis: spec::AxisName::X, position: value, hole: Some(spec::Opening { along: spec::AxisName::Y, from: value, to: lower[0] }) }),
+                22 => system.partitions.push(spec::Plate { axis: spec::AxisName::X, position: value, hole: Some(spec::Opening { along: spec::AxisName::Y, from: value, to: lower[0] }), removed_at: Some(value) }),
+                23 => system.obstacles.push(spec::Peg { centre: lower.clone(), radius: value }),
+                24 => system.walls.push(spec::Wall { axis: spec::AxisName::X, side: spec::Side::Upper, temperature: Some(value), path: Some(vec![[0.0, value], [lower[0], lower[1]]]), oscillation: None, opened_at: None }),
+                25 => system.walls.push(spec::Wall { axis: spec::AxisName::Y, side: spec::Side::Lower, temperature: None, path: None, oscillation: Some(spec::Swing { centre: value, amplitude: lower[0], angular_frequency: lower[1], phase: value }), opened_at: Some(value) }),
+                26 => system.piston = Some(spec::Cylinder { axis: spec::AxisName::X, position: value, velocity: lower[0], mass: lower[1], force: value, stops: None }),
+                27 => system.collisions = Some(spec::Collisions { restitution: None, viscoelastic: Some(spec::Viscoelastic { stiffness: value, dissipation_time: lower[0] }), elastic_below: 0.0, well: Some(spec::Well { range: lower[1], depth: value }), shoulder: None }),
                 _ => if let Some(forces) = &mut system.forces {
                     let pair = spec::Contact { epsilon: value, sigma: lower[0], cutoff: Some(lower[1]) };
                     forces.lennard_jones = Some(pair);
