@@ -6,7 +6,7 @@ use corpuscle_core::{Axis, Boundary, Engine, Failure, Invalid, Observer, Particl
 
 use crate::constraint::{Drive, Held, Pin};
 use crate::force::Force;
-use crate::integrator::{Integrator, Stepper};
+use crate::integrator::{Integrator, Link, Stepper};
 use crate::system::System;
 
 /// A caller's time may fall short of the end of a step by this share of it: the rounding of the caller's sums.
@@ -40,6 +40,7 @@ struct Kept<const D: usize> {
     velocity: Vec<Vector<D>>,
     images: Vec<[i64; D]>,
     acceleration: Vec<Vector<D>>,
+    links: Vec<Link>,
     fresh: bool,
 }
 
@@ -133,6 +134,12 @@ impl<const D: usize> TimeDriven<D> {
         self.kinetic_energy() + self.potential_energy()
     }
 
+    /// What the equations of motion conserve: [`energy`](Self::energy) and, with a Nose-Hoover chain, what its links hold,
+    /// `sum Q_k v_k^2/2 + f k T eta_1 + k T (eta_2 + ... + eta_M)`. Other thermostats exchange heat that is not counted.
+    pub fn conserved_energy(&self) -> f64 {
+        self.energy() + self.stepper.energy()
+    }
+
     /// Total momentum.
     pub fn momentum(&self) -> Vector<D> {
         self.system.particles.momentum()
@@ -213,6 +220,8 @@ impl<const D: usize> TimeDriven<D> {
         self.kept.images.clone_from(images);
         self.kept.acceleration.clone_from(acceleration);
         self.kept.fresh = *fresh;
+        self.kept.links.clear();
+        self.kept.links.extend_from_slice(self.stepper.links());
     }
 
     fn restore(&mut self) {
@@ -223,6 +232,7 @@ impl<const D: usize> TimeDriven<D> {
         images.clone_from(&self.kept.images);
         acceleration.clone_from(&self.kept.acceleration);
         *fresh = self.kept.fresh;
+        self.stepper.set_links(&self.kept.links);
     }
 
     /// Every whole step of length `dt` up to `to`.
