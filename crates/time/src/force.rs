@@ -1,8 +1,12 @@
 //! Forces, one file each.
 
+mod born_mayer;
 mod central;
+mod complementary_error;
+mod coulomb;
 mod drag;
 mod drive;
+mod ewald;
 mod exponential;
 mod force_shifted;
 mod gravity;
@@ -11,14 +15,18 @@ mod inverse_power;
 mod lennard_jones;
 mod morse;
 mod pair;
+mod screened_charge;
 mod spring;
 mod uniform;
 mod wca;
 mod yukawa;
 
+pub use born_mayer::BornMayer;
 pub use central::CentralField;
+pub use coulomb::Coulomb;
 pub use drag::Drag;
 pub use drive::DrivingForce;
+pub use ewald::Ewald;
 pub use force_shifted::ForceShifted;
 pub use gravity::{Gravity, TreeGravity};
 pub use harmonic_repulsion::HarmonicRepulsion;
