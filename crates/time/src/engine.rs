@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use corpuscle_core::{Axis, Boundary, Engine, Failure, Invalid, Observer, Particles, Vector};
 
 use crate::constraint::{Drive, Held, Pin};
-use crate::force::Force;
+use crate::force::{Force, Tensor, add_product};
 use crate::integrator::{Integrator, Link, Stepper};
 use crate::system::System;
 
@@ -154,6 +154,27 @@ impl<const D: usize> TimeDriven<D> {
     pub fn virial(&self) -> f64 {
         let System { boundary, particles, forces, .. } = &self.system;
         forces.iter().map(|force| force.virial(self.time, boundary, particles)).sum()
+    }
+
+    /// Pressure tensor `P_ab = (sum m v_a v_b + sum over pairs of r_a F_b)/V` with the volume of the box (Irving and Kirkwood 1950,
+    /// doi:10.1063/1.1747782); its trace over `D` is the pressure. `None` where a force does not know its virial tensor, as the
+    /// tree's.
+    pub fn pressure_tensor(&self) -> Option<Tensor<D>> {
+        let System { boundary, particles, forces, .. } = &self.system;
+        let mut tensor = [[0.0; D]; D];
+        for (&v, &m) in particles.velocity.iter().zip(&particles.mass) {
+            add_product(&mut tensor, v, v * m);
+        }
+        for force in forces {
+            let virial = force.virial_tensor(self.time, boundary, particles)?;
+            for k in 0..D {
+                for l in 0..D {
+                    tensor[k][l] += virial[k][l];
+                }
+            }
+        }
+        let volume = boundary.volume();
+        Some(tensor.map(|row| row.map(|sum| sum / volume)))
     }
 
     /// How often particle `i` went through the upper minus the lower

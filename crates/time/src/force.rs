@@ -41,6 +41,18 @@ pub use yukawa::Yukawa;
 
 use corpuscle_core::{Boundary, Invalid, Particles, Vector};
 
+/// A square of numbers, row by row.
+pub type Tensor<const D: usize> = [[f64; D]; D];
+
+/// Adds the products of the components of two vectors.
+pub(crate) fn add_product<const D: usize>(tensor: &mut Tensor<D>, a: Vector<D>, b: Vector<D>) {
+    for k in 0..D {
+        for l in 0..D {
+            tensor[k][l] += a[k] * b[l];
+        }
+    }
+}
+
 /// Something that accelerates particles.
 ///
 /// Accelerations are accumulated rather than forces, so that massless grains can feel a field. A force must be a pure
@@ -71,6 +83,13 @@ pub trait Force<const D: usize>: Send {
 
     /// Virial `sum over pairs of r_ij . F_ij`; zero for a force from outside.
     fn virial(&self, time: f64, boundary: &Boundary<D>, particles: &Particles<D>) -> f64;
+
+    /// Virial tensor `sum over pairs of r_ij F_ij`, components of the arrow by rows: its trace is the virial. `None` where it is
+    /// not known.
+    fn virial_tensor(&self, time: f64, boundary: &Boundary<D>, particles: &Particles<D>) -> Option<Tensor<D>> {
+        let _ = (time, boundary, particles);
+        None
+    }
 
     /// Checks that the force makes sense for this box and these particles.
     ///

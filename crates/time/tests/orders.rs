@@ -78,7 +78,7 @@ fn velocity_verlet_keeps_order_two_with_drag() {
     assert_order("velocity-verlet with drag", 2, error, 1.0 / 16.0);
 }
 
-/// Over `10^5` steps a symplectic integrator's mean energy moves by less than the energy swings within one orbit; the
+/// Over `10^6` steps a symplectic integrator's mean energy moves by a tenth of what the energy swings within one orbit, and it swings no wider; the
 /// same test catches an integrator that is not symplectic.
 #[test]
 fn symplectic_integrators_keep_energy_bounded() {
@@ -105,11 +105,10 @@ fn symplectic_integrators_keep_energy_bounded() {
             (high - low, sum / f64::from(to - from))
         };
         let (swing, first) = stretch(0, 10_000);
-        stretch(10_000, 90_000);
-        let (_, last) = stretch(90_000, 100_000);
-        let bounded = (last - first).abs() < swing;
+        let (later, last) = stretch(990_000, 1_000_000);
+        let bounded = (last - first).abs() < 0.1 * swing && later < 1.1 * swing;
         println!("{name}: swing {swing:.2e}, drift {:.2e}", (last - first).abs());
-        // Runge-Kutta drifts, but at this step still swings more than it drifts in a tenth of the run.
+        // Runge-Kutta drifts, but at this step still swings more than it drifts in a hundredth of the run.
         let per_orbit = swing / (10_000.0 * dt / std::f64::consts::TAU);
         let drifts = (last - first).abs() > per_orbit;
         assert!(bounded || !integrator.is_symplectic(), "{name}: {first} to {last}, swing {swing}");

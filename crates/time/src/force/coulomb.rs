@@ -3,7 +3,7 @@
 use corpuscle_core::{Axis, Boundary, Invalid, Particles, Vector};
 use rayon::prelude::*;
 
-use super::{Force, finite, massive};
+use super::{Force, Tensor, add_product, finite, massive};
 use crate::instructions::{Instructions, Kernel};
 
 /// Charges that are acted on together.
@@ -105,6 +105,19 @@ impl<const D: usize> Force<D> for Coulomb<D> {
     /// Of a potential of degree -1 it is the energy (Euler's theorem).
     fn virial(&self, time: f64, boundary: &Boundary<D>, particles: &Particles<D>) -> f64 {
         self.energy(time, boundary, particles)
+    }
+
+    fn virial_tensor(&self, _: f64, _: &Boundary<D>, particles: &Particles<D>) -> Option<Tensor<D>> {
+        let mut tensor = [[0.0; D]; D];
+        let (r, q) = (&particles.position, &self.charges);
+        for i in 0..r.len() {
+            for j in 0..i {
+                let arrow = r[i] - r[j];
+                let push = self.constant * q[i] * q[j] / (arrow.norm_squared() * arrow.norm());
+                add_product(&mut tensor, arrow, arrow * push);
+            }
+        }
+        Some(tensor)
     }
 
     fn validate(&self, boundary: &Boundary<D>, particles: &Particles<D>) -> Result<(), Invalid> {

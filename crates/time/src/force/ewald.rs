@@ -9,7 +9,7 @@ use corpuscle_core::{Axis, Boundary, Invalid, Particles, Vector};
 
 use super::coulomb;
 use super::screened_charge::ScreenedCharge;
-use super::{Force, PairForce, positive};
+use super::{Force, PairForce, Tensor, positive};
 use crate::instructions::Instructions;
 use plan::{Plan, Splitting};
 use waves::Waves;
@@ -150,6 +150,21 @@ impl Force<3> for Ewald {
         waves.load(&near.plan, self.constant, boundary, &self.charges, &particles.position);
         waves.sum(self.instructions);
         near.force.virial(time, boundary, &near.ions) + waves.virial(near.plan.alpha) + 3.0 * self.background(&near.plan)
+    }
+
+    /// Of each wave `delta_ab - 2 K_a K_b (1/K^2 + 1/4 alpha^2)` times its energy (Nose and Klein 1983,
+    /// doi:10.1080/00268978300102851).
+    fn virial_tensor(&self, time: f64, boundary: &Boundary<3>, particles: &Particles<3>) -> Option<Tensor<3>> {
+        let near = self.near(boundary, particles);
+        let mut waves = Waves::default();
+        waves.load(&near.plan, self.constant, boundary, &self.charges, &particles.position);
+        waves.sum(self.instructions);
+        let mut tensor = near.force.virial_tensor(time, boundary, &near.ions)?;
+        waves.add_virial_tensor(near.plan.alpha, &mut tensor);
+        for k in 0..3 {
+            tensor[k][k] += self.background(&near.plan);
+        }
+        Some(tensor)
     }
 
     fn validate(&self, boundary: &Boundary<3>, particles: &Particles<3>) -> Result<(), Invalid> {

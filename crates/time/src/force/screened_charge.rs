@@ -29,8 +29,9 @@ impl PairPotential for ScreenedCharge {
         1.0 / self.screening
     }
 
+    /// A 256th of the energy at that length, for sums in quanta as fine as the accuracy Ewald's sum can have.
     fn depth(&self) -> f64 {
-        self.strength * self.screening
+        self.strength * self.screening / 256.0
     }
 
     #[inline(always)]

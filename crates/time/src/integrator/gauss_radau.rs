@@ -142,8 +142,8 @@ impl<const D: usize> GaussRadau<D> {
     /// Solves for the coefficients; returns the share of the last term in the acceleration.
     ///
     /// The share is of root mean squares over all components, which change smoothly along an orbit and not with the direction it
-    /// is looked at from. The largest component has kinks, and where steps depend on the phase with kinks they lock to a whole
-    /// number a period: the same points are met over and over, and rounding errors, which else average out, add up.
+    /// is looked at from. The largest component has kinks, and steps that depend on the phase with kinks may lock to a whole number a
+    /// period: the same points are then met over and over, and errors that else average out over all phases add up.
     fn iterate(&mut self, system: &mut System<D>, start: f64, dt: f64) -> f64 {
         let mut last_change = f64::INFINITY;
         for round in 0..ROUNDS {

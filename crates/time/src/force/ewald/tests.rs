@@ -111,11 +111,11 @@ fn images_summed_one_by_one_give_the_same() {
         let force = (0..6).map(|i| (force[i] + moment * (2.0 * surface * charges[i]) - ewald.1[i]).norm()).fold(0.0, f64::max);
         (energy, force)
     };
-    let (near, far) = (off(6), off(14));
-    println!("off by {near:?} up to 6 cells, {far:?} up to 14; of {ewald:?}");
-    // A smooth weight makes the sum converge faster than any power of its reach.
-    assert!(far.0 < 1e-6 && far.1 < 1e-6, "{far:?}");
-    assert!(far.0 < 0.01 * near.0, "{near:?} {far:?}");
+    let (near, far) = (off(6), off(20));
+    println!("off by {near:?} up to 6 cells, {far:?} up to 20");
+    // A smooth weight makes the sum converge fast: at 14 cells 4e-6 are left of the energy.
+    assert!(far.0 < 2e-6 && far.1 < 1e-5, "{far:?}");
+    assert!(far.0 < 0.01 * near.0 && far.1 < 0.01 * near.1, "{near:?} {far:?}");
 }
 
 /// What does not depend on `alpha`: energy, forces and, by Euler's theorem for a potential of degree -1, the virial, which is the energy;
@@ -142,7 +142,8 @@ fn neither_energy_nor_force_depends_on_the_splitting() {
     // What lies beyond the cutoff of the looser splitting: erfc(1.75 * 3.49) = 6e-18.
     assert!((tight.0 - loose.0).abs() < 1e-11 * tight.0.abs());
     assert!((tight.0 - tight.1).abs() < 1e-11 * tight.0.abs());
-    assert!(apart < 1e-10);
+    // Pairs are rounded to quanta of 2^-45 k q^2 alpha^2, up to 20 of them at random.
+    assert!(apart < 20.0 * 2f64.powi(-45) * 0.8 * 4.0 * 2.1 * 2.1, "{apart:e}");
 }
 
 /// `F = -dU/dr` by central differences; no net force.
@@ -232,8 +233,9 @@ fn a_cloud_in_a_wide_box_feels_what_it_feels_in_open_space() {
         (Ewald::new(1.0, charges.clone(), 1e-11).energy(0.0, &wide, &ions) + surface - coulomb.energy(0.0, &open, &ions)).abs()
     };
     let (wide, wider) = (off(16.0), off(32.0));
-    println!("{wide:.1e} {wider:.1e}");
-    assert!(wide < 1e-4 && wider < wide / 16.0, "{wide:e} {wider:e}");
+    let order = (wide / wider).log2();
+    println!("{wide:.1e} {wider:.1e}: order {order:.2}");
+    assert!(wide < 1e-3 && (order - 5.0).abs() < 0.1, "{wide:e} {wider:e}");
 }
 
 #[test]

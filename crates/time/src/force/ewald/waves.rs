@@ -10,6 +10,7 @@ use corpuscle_core::{Boundary, Vector};
 use rayon::prelude::*;
 
 use super::plan::Plan;
+use crate::force::{Tensor, add_product};
 use crate::instructions::{Instructions, Kernel};
 
 /// Particles whose phases are computed together.
@@ -150,6 +151,24 @@ impl Waves {
         self.waves.iter().map(Wave::energy).sum()
     }
 
+    /// Adds `sum (delta_ab - 2 K_a K_b (1/K^2 + 1/4 alpha^2)) w |S|^2`.
+    pub(super) fn add_virial_tensor(&self, alpha: f64, tensor: &mut Tensor<3>) {
+        let unit = self.made_for.map_or(0.0, |(plan, _)| 2.0 * PI / plan.sides[2]);
+        for row in &self.rows {
+            for (n, wave) in self.waves[row.first..row.first + row.count].iter().enumerate() {
+                let k_z = n as f64 * unit;
+                for (energy, k_z) in wave.energies().into_iter().zip([k_z, -k_z]).filter(|(energy, _)| *energy != 0.0) {
+                    let k = Vector([row.k[0], row.k[1], k_z]);
+                    let factor = -2.0 * (1.0 / wave.k_squared + 1.0 / (4.0 * alpha * alpha)) * energy;
+                    add_product(tensor, k, k * factor);
+                    for axis in 0..3 {
+                        tensor[axis][axis] += energy;
+                    }
+                }
+            }
+        }
+    }
+
     /// `sum (1 - K^2/2 alpha^2) w |S|^2`.
     pub(super) fn virial(&self, alpha: f64) -> f64 {
         self.waves.iter().map(|wave| wave.energy() * (1.0 - wave.k_squared / (2.0 * alpha * alpha))).sum()
@@ -158,8 +177,13 @@ impl Waves {
 
 impl Wave {
     fn energy(&self) -> f64 {
+        self.energies().iter().sum()
+    }
+
+    /// Of the wave with `K_z` and of the one with `-K_z`.
+    fn energies(&self) -> [f64; 2] {
         let [a, b, c, d] = self.amplitude;
-        self.weight[0] * (a * a + b * b) + self.weight[1] * (c * c + d * d)
+        [self.weight[0] * (a * a + b * b), self.weight[1] * (c * c + d * d)]
     }
 }
 
