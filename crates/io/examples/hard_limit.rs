@@ -53,10 +53,13 @@ fn tunnelling() -> Chart {
     for exponent in [12, 48, 192u8] {
         let counts: Vec<[u32; 2]> = steps.iter().map(|&dt| missed(exponent, dt, PAIRS, 7)).collect();
         println!("n = {exponent}: {counts:?}");
-        let series = |kind: usize| steps.iter().zip(&counts).map(move |(&dt, counts)| (dt, share(counts[kind]))).collect::<Vec<_>>();
-        chart = chart
-            .with(Series::new(format!("passed through, n = {exponent}"), Style::Line, series(0)))
-            .with(Series::new(format!("energy off by 10 %, n = {exponent}"), Style::Line, series(1)));
+        let series =
+            |kind: usize| steps.iter().zip(&counts).map(move |(&dt, counts)| (dt, share(counts[kind]))).collect::<Vec<_>>();
+        chart = chart.with(Series::new(format!("passed through, n = {exponent}"), Style::Line, series(0))).with(Series::new(
+            format!("energy off by 10 %, n = {exponent}"),
+            Style::Line,
+            series(1),
+        ));
     }
     let events = missed_by_events(PAIRS, 7);
     println!("event-driven: {events:?} of {PAIRS}");

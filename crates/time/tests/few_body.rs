@@ -91,7 +91,7 @@ fn radau_s_energy_error_is_rounding() {
 /// standard error. Of all steps each may round the energy by `1.6e-2` of its last digit, the spread of the sixteen.
 #[test]
 fn rounding_has_no_bias() {
-    let periods = 500u32;
+    let periods = 300u32;
     let drift = |direction: u32| {
         let mut engine = figure_eight_turned(0.1 + 0.39 * f64::from(direction), RADAU);
         let energy = engine.energy();

@@ -24,7 +24,10 @@ fn steep_spheres_approach_the_event_driven_engine() {
     }
     let limit = extrapolate(&points);
     let z = (limit.mean - hard.mean) / limit.standard_error.hypot(hard.standard_error);
-    println!("limit {:.4} +- {:.4}, hard spheres {:.4} +- {:.4}, z = {z:.2}", limit.mean, limit.standard_error, hard.mean, hard.standard_error);
+    println!(
+        "limit {:.4} +- {:.4}, hard spheres {:.4} +- {:.4}, z = {z:.2}",
+        limit.mean, limit.standard_error, hard.mean, hard.standard_error
+    );
     assert!(z.abs() < 4.0, "z = {z}");
     assert!(limit.standard_error < 0.02 * hard.mean, "too uncertain: {}", limit.standard_error);
     // The softest is far from the limit: what is extrapolated is there to be seen.

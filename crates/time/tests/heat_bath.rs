@@ -211,9 +211,7 @@ fn noise_belongs_to_the_step() {
         }
         engine.snapshot()
     };
-    let run = |seed, pieces| {
-        run_with(Integrator::Langevin { dt: 0.02, temperature: TEMPERATURE, friction: 1.0, seed }, pieces)
-    };
+    let run = |seed, pieces| run_with(Integrator::Langevin { dt: 0.02, temperature: TEMPERATURE, friction: 1.0, seed }, pieces);
     let chain =
         Integrator::NoseHoover { dt: 0.02, temperature: TEMPERATURE, relaxation_time: 0.5, degrees_of_freedom: 8, links: 3 };
     assert!(run_with(chain, 1) == run_with(chain, 77));
@@ -234,13 +232,8 @@ fn impossible_baths_are_refused_by_name() {
     grain.mass[0] = 1.0;
     assert_eq!(refused(langevin(-1.0, 1.0), &grain), "temperature");
     assert_eq!(refused(langevin(1.0, f64::NAN), &grain), "friction");
-    let chain = |temperature, links| Integrator::NoseHoover {
-        dt: 0.1,
-        temperature,
-        relaxation_time: 1.0,
-        degrees_of_freedom: 2,
-        links,
-    };
+    let chain =
+        |temperature, links| Integrator::NoseHoover { dt: 0.1, temperature, relaxation_time: 1.0, degrees_of_freedom: 2, links };
     assert_eq!(refused(chain(0.0, 3), &grain), "temperature");
     assert_eq!(refused(chain(1.0, 0), &grain), "links");
     assert_eq!(refused(chain(1.0, 65), &grain), "links");

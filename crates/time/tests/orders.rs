@@ -82,7 +82,6 @@ fn velocity_verlet_keeps_order_two_with_drag() {
 /// same test catches an integrator that is not symplectic.
 #[test]
 fn symplectic_integrators_keep_energy_bounded() {
-    let dt = 0.05;
     let e = ECCENTRICITY;
     // The planet has no mass: its energy per mass, by hand.
     let energy = |engine: &TimeDriven<2>| {
@@ -91,8 +90,10 @@ fn symplectic_integrators_keep_energy_bounded() {
     };
     for name in Integrator::NAMES
         .iter()
-        .filter(|name| !EXACT_FOR_TWO.contains(name) && Integrator::from_name(name, dt).unwrap().dt().is_some())
+        .filter(|name| !EXACT_FOR_TWO.contains(name) && Integrator::from_name(name, 1.0).unwrap().dt().is_some())
     {
+        // At order 8 the same step would leave nothing but roundings.
+        let dt = if *name == "yoshida-8" { 0.2 } else { 0.05 };
         let integrator = Integrator::from_name(name, dt).unwrap();
         let mut engine = planet(integrator);
         let mut stretch = |from: u32, to: u32| {

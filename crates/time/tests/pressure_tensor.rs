@@ -14,7 +14,13 @@ fn fluid(sides: [usize; 3], axis: Axis) -> (Boundary<3>, Particles<3>) {
     for i in 0..sides.iter().product() {
         let site = Vector([(i % sides[0]) as f64, (i / sides[0] % sides[1]) as f64, (i / sides[0] / sides[1]) as f64]);
         let velocity = Vector::from_fn(|_| random.normal());
-        particles.push(site * 1.1 + Vector::from_fn(|_| 0.1 * random.uniform()), velocity, 1.0 + random.uniform(), 0.0, (i % 3) as u16);
+        particles.push(
+            site * 1.1 + Vector::from_fn(|_| 0.1 * random.uniform()),
+            velocity,
+            1.0 + random.uniform(),
+            0.0,
+            (i % 3) as u16,
+        );
     }
     (Boundary::new([0.0; 3], sides.map(|n| 1.1 * n as f64), axis), particles)
 }
@@ -53,7 +59,11 @@ fn the_virial_tensor_of_pairs_is_the_response_to_stretching() {
             let (boundary, particles) = fluid(sides, axis);
             // Force-shifted, for the energy of a pair that crosses the cutoff has no kink to upset the differences.
             let between = |a: u16, b: u16| {
-                corpuscle_time::ForceShifted(LennardJones { epsilon: 1.0 + f64::from(a), sigma: 1.0, cutoff: 1.4 + 0.1 * f64::from(b) })
+                corpuscle_time::ForceShifted(LennardJones {
+                    epsilon: 1.0 + f64::from(a),
+                    sigma: 1.0,
+                    cutoff: 1.4 + 0.1 * f64::from(b),
+                })
             };
             check(&PairForce::between_species(3, between), &boundary, &particles);
         }
@@ -78,8 +88,11 @@ fn the_virial_tensor_turns_with_the_system() {
     let mut turned = particles.clone();
     turned.position.iter_mut().for_each(|r| *r = turn(*r));
     for (number, force) in forces.iter().enumerate() {
-        let tensor =
-            if number < 3 { check(&**force, &boundary, &particles) } else { force.virial_tensor(0.0, &boundary, &particles).unwrap() };
+        let tensor = if number < 3 {
+            check(&**force, &boundary, &particles)
+        } else {
+            force.virial_tensor(0.0, &boundary, &particles).unwrap()
+        };
         let found = force.virial_tensor(0.0, &boundary, &turned).unwrap();
         let size: f64 = tensor.iter().flatten().map(|x| x.abs()).sum();
         for a in 0..3 {

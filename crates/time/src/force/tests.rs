@@ -65,8 +65,7 @@ fn check_all<const D: usize>() {
         check(boundary, &particles, &mut PairForce::between_species(3, between));
         check(boundary, &particles, &mut Springs::new(Clone::clone(&springs)));
     }
-    let born_mayer =
-        BornMayer { epsilon: 1.2, sigma: 1.1, hardness: 0.3, dispersion: 0.4, higher_dispersion: 0.2, cutoff: 2.41 };
+    let born_mayer = BornMayer { epsilon: 1.2, sigma: 1.1, hardness: 0.3, dispersion: 0.4, higher_dispersion: 0.2, cutoff: 2.41 };
     check(&open, &particles, &mut PairForce::new(born_mayer));
     let charges: Vec<f64> = (0..particles.len()).map(|i| [1.0, -2.0, 0.5][i % 3]).collect();
     check(&open, &particles, &mut Coulomb::new(1.3, charges));

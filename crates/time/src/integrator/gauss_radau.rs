@@ -182,9 +182,8 @@ impl<const D: usize> GaussRadau<D> {
             }
             last_change = change;
         }
-        let squares = |(term, scale), (body, a): (&Body<D>, &Vector<D>)| {
-            (term + body.b[ORDER - 1].norm_squared(), scale + a.norm_squared())
-        };
+        let squares =
+            |(term, scale), (body, a): (&Body<D>, &Vector<D>)| (term + body.b[ORDER - 1].norm_squared(), scale + a.norm_squared());
         let (last_term, scale) = self.bodies.iter().zip(&system.acceleration).fold((0.0, 0.0), squares);
         let (last_term, scale) = (last_term.sqrt(), scale.sqrt());
         // Against accelerations; but what does not change the last bit of a velocity is no error. Without that, a kink in a

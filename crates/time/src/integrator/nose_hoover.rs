@@ -54,13 +54,7 @@ impl Chain {
         }
     }
 
-    pub(crate) fn step<const D: usize>(
-        &mut self,
-        system: &mut System<D>,
-        start: f64,
-        end: f64,
-        dt: f64,
-    ) -> Result<(), Failure> {
+    pub(crate) fn step<const D: usize>(&mut self, system: &mut System<D>, start: f64, end: f64, dt: f64) -> Result<(), Failure> {
         system.accelerate(start, 0.0);
         self.rub(system, 0.5 * dt);
         system.kick_and_drift(0.5 * dt, dt);

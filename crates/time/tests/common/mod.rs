@@ -63,7 +63,7 @@ pub fn hard_compressibility(packing: f64, time: f64, seed: u64) -> Estimate {
 /// `Z` of hard spheres of the diameter `int (1 - exp(-U/kT)) dr = Gamma(1 - 1/n)` (Barker and Henderson 1967,
 /// doi:10.1063/1.1701689): right to the first order in `1/n`.
 pub fn barker_henderson(exponent: f64, packing: f64) -> f64 {
-    theory::hard_spheres::compressibility::<3>(packing * libm::tgamma(1.0 - 1.0 / exponent).powi(3))
+    theory::compressibility::<3>(packing * libm::tgamma(1.0 - 1.0 / exponent).powi(3))
 }
 
 /// Head-on encounters at relative speeds as they occur in a gas, from random phases of the step.

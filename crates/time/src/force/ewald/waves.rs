@@ -111,8 +111,8 @@ impl Waves {
                 for z in 0..count {
                     let k_z = z as f64 * unit[2];
                     let k_squared = k[0] * k[0] + k[1] * k[1] + k_z * k_z;
-                    let weight = 4.0 * PI * constant * libm::exp(-k_squared / (4.0 * plan.alpha * plan.alpha))
-                        / (plan.volume() * k_squared);
+                    let weight =
+                        4.0 * PI * constant * libm::exp(-k_squared / (4.0 * plan.alpha * plan.alpha)) / (plan.volume() * k_squared);
                     let up = if k_squared > 0.0 { weight } else { 0.0 };
                     let down = if z > 0 && (x > 0 || y > 0) { weight } else { 0.0 };
                     self.waves.push(Wave { weight: [up, down], k_squared, amplitude: [0.0; 4] });

@@ -65,7 +65,8 @@ impl<const D: usize> Cells<D> {
         }
         let place = |r: &Vector<D>| std::array::from_fn(|k| (((r[k] - lower[k]) / width[k]) as usize).min(count[k] - 1));
         let cell: Vec<[usize; D]> = position.iter().map(place).collect();
-        let mut cells = Self { axes: boundary.axes, count, cell, start: vec![0; count.iter().product::<usize>() + 1], order: vec![] };
+        let mut cells =
+            Self { axes: boundary.axes, count, cell, start: vec![0; count.iter().product::<usize>() + 1], order: vec![] };
         for cell in &cells.cell {
             cells.start[number(cell, &count) + 1] += 1;
         }
