@@ -8,7 +8,7 @@ use corpuscle_observe::{Estimate, VirialPressure, blocking, theory};
 use corpuscle_time::{Force, Integrator, InversePower, PairForce, TimeDriven};
 
 /// Particles in a box, enough that `Z` is 1 % from its limit at most: hard and soft ones are compared at the same number.
-pub const PARTICLES: usize = 108;
+pub(crate) const PARTICLES: usize = 108;
 
 fn start(packing: f64, seed: u64, radius: f64) -> (Boundary<3>, Particles<3>) {
     let side = (PARTICLES as f64 * corpuscle_core::particles::ball_volume::<3>(0.5) / packing).cbrt();
@@ -23,12 +23,12 @@ fn start(packing: f64, seed: u64, radius: f64) -> (Boundary<3>, Particles<3>) {
 }
 
 /// The potential `(1/r)^n`, cut where a millionth of `k T` is left.
-pub fn soft(exponent: u8) -> InversePower {
+pub(crate) fn soft(exponent: u8) -> InversePower {
     InversePower { epsilon: 1.0, sigma: 1.0, exponent, cutoff: 1e6f64.powf(1.0 / f64::from(exponent)) }
 }
 
 /// `Z = 1 + W/(3 N k T)` of the soft spheres over this time, at constant temperature.
-pub fn soft_compressibility(exponent: u8, packing: f64, time: f64, seed: u64) -> Estimate {
+pub(crate) fn soft_compressibility(exponent: u8, packing: f64, time: f64, seed: u64) -> Estimate {
     // The steepest part of a collision at thermal speed takes 1/n.
     let dt = 0.06 / f64::from(exponent);
     let degrees_of_freedom = 3 * (PARTICLES as u32 - 1);
@@ -48,7 +48,7 @@ pub fn soft_compressibility(exponent: u8, packing: f64, time: f64, seed: u64) ->
 }
 
 /// `Z` of hard spheres, by the event-driven engine.
-pub fn hard_compressibility(packing: f64, time: f64, seed: u64) -> Estimate {
+pub(crate) fn hard_compressibility(packing: f64, time: f64, seed: u64) -> Estimate {
     let (boundary, particles) = start(packing, seed, 0.5);
     let volume = boundary.volume();
     let mut engine = EventDriven::new(boundary, particles, Rules::default()).unwrap();
@@ -62,7 +62,7 @@ pub fn hard_compressibility(packing: f64, time: f64, seed: u64) -> Estimate {
 
 /// `Z` of hard spheres of the diameter `int (1 - exp(-U/kT)) dr = Gamma(1 - 1/n)` (Barker and Henderson 1967,
 /// doi:10.1063/1.1701689): right to the first order in `1/n`.
-pub fn barker_henderson(exponent: f64, packing: f64) -> f64 {
+pub(crate) fn barker_henderson(exponent: f64, packing: f64) -> f64 {
     theory::compressibility::<3>(packing * libm::tgamma(1.0 - 1.0 / exponent).powi(3))
 }
 
@@ -84,7 +84,7 @@ const SPACE: f64 = 1e3;
 
 /// Of so many head-on encounters of soft spheres with a fixed step: how many pass through each other, and how many else come out
 /// with an energy that is off by a tenth or more. An overflow counts as the second.
-pub fn missed(exponent: u8, dt: f64, pairs: u32, seed: u64) -> [u32; 2] {
+pub(crate) fn missed(exponent: u8, dt: f64, pairs: u32, seed: u64) -> [u32; 2] {
     let mut missed = [0; 2];
     for (speed, phase) in encounters(pairs, seed) {
         let cutoff = soft(exponent).cutoff;
@@ -107,7 +107,7 @@ pub fn missed(exponent: u8, dt: f64, pairs: u32, seed: u64) -> [u32; 2] {
 }
 
 /// The same encounters of hard spheres, by the event-driven engine.
-pub fn missed_by_events(pairs: u32, seed: u64) -> [u32; 2] {
+pub(crate) fn missed_by_events(pairs: u32, seed: u64) -> [u32; 2] {
     let mut missed = [0; 2];
     for (speed, phase) in encounters(pairs, seed) {
         let space = Boundary::new([-SPACE; 2], [SPACE; 2], Axis::Open);
@@ -123,7 +123,7 @@ pub fn missed_by_events(pairs: u32, seed: u64) -> [u32; 2] {
 }
 
 /// The parabola of least `chi^2` through points `(x, y, standard error)`: its value at zero.
-pub fn extrapolate(points: &[(f64, f64, f64)]) -> Estimate {
+pub(crate) fn extrapolate(points: &[(f64, f64, f64)]) -> Estimate {
     let mut matrix = [[0.0; 4]; 3];
     for &(x, y, error) in points {
         let (powers, weight) = ([1.0, x, x * x], 1.0 / (error * error));

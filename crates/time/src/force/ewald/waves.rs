@@ -28,14 +28,14 @@ struct Row {
     /// Whether `K_y` is negative.
     mirrored: bool,
     k: [f64; 2],
-    /// Its waves in the list of all of them.
+    /// Its pairs of waves in the list of all of them.
     first: usize,
     count: usize,
 }
 
 /// Two waves, of `K_z` and `-K_z`.
 #[derive(Clone, Copy, Debug, Default)]
-struct Wave {
+struct Pair {
     /// `4 pi k exp(-K^2/4 alpha^2)/(V K^2)` of each of the two; zero where it is counted elsewhere.
     weight: [f64; 2],
     k_squared: f64,
@@ -49,7 +49,7 @@ pub(super) struct Waves {
     /// What rows and weights were made for.
     made_for: Option<(Plan, f64)>,
     rows: Vec<Row>,
-    waves: Vec<Wave>,
+    pairs: Vec<Pair>,
     /// Orders `n` of the phase factors along each axis.
     orders: [usize; 3],
     /// `exp(2 pi i n x/L_x)` times the charge, `exp(2 pi i n y/L_y)`, `exp(2 pi i n z/L_z)`, for `n` from 0, one group of
@@ -98,7 +98,7 @@ impl Waves {
         let highest = unit.map(|unit| (most / unit).floor());
         self.orders = highest.map(|n| n as usize + 1);
         self.rows.clear();
-        self.waves.clear();
+        self.pairs.clear();
         for x in 0..self.orders[0] {
             for (y, mirrored) in (0..self.orders[1]).flat_map(|y| [(y, false), (y, true)]) {
                 let k = [x as f64 * unit[0], if mirrored { -(y as f64) } else { y as f64 } * unit[1]];
@@ -107,7 +107,7 @@ impl Waves {
                     continue; // beyond reach, or the opposite of another row
                 }
                 let count = ((left.sqrt() / unit[2]).floor() as usize + 1).min(self.orders[2]);
-                self.rows.push(Row { x, y, mirrored, k, first: self.waves.len(), count });
+                self.rows.push(Row { x, y, mirrored, k, first: self.pairs.len(), count });
                 for z in 0..count {
                     let k_z = z as f64 * unit[2];
                     let k_squared = k[0] * k[0] + k[1] * k[1] + k_z * k_z;
@@ -115,7 +115,7 @@ impl Waves {
                         4.0 * PI * constant * libm::exp(-k_squared / (4.0 * plan.alpha * plan.alpha)) / (plan.volume() * k_squared);
                     let up = if k_squared > 0.0 { weight } else { 0.0 };
                     let down = if z > 0 && (x > 0 || y > 0) { weight } else { 0.0 };
-                    self.waves.push(Wave { weight: [up, down], k_squared, amplitude: [0.0; 4] });
+                    self.pairs.push(Pair { weight: [up, down], k_squared, amplitude: [0.0; 4] });
                 }
             }
         }
@@ -126,7 +126,7 @@ impl Waves {
         let (phases, orders) = (&self.phases, self.orders);
         let amplitudes = |row: &Row| instructions.run(Amplitudes { row, phases, orders });
         let amplitudes: Vec<Vec<[f64; 4]>> = self.rows.par_iter().map(amplitudes).collect();
-        for (wave, amplitude) in self.waves.iter_mut().zip(amplitudes.into_iter().flatten()) {
+        for (wave, amplitude) in self.pairs.iter_mut().zip(amplitudes.into_iter().flatten()) {
             wave.amplitude = amplitude;
         }
     }
@@ -148,14 +148,14 @@ impl Waves {
 
     /// `sum w |S|^2`.
     pub(super) fn energy(&self) -> f64 {
-        self.waves.iter().map(Wave::energy).sum()
+        self.pairs.iter().map(Pair::energy).sum()
     }
 
     /// Adds `sum (delta_ab - 2 K_a K_b (1/K^2 + 1/4 alpha^2)) w |S|^2`.
     pub(super) fn add_virial_tensor(&self, alpha: f64, tensor: &mut Tensor<3>) {
         let unit = self.made_for.map_or(0.0, |(plan, _)| 2.0 * PI / plan.sides[2]);
         for row in &self.rows {
-            for (n, wave) in self.waves[row.first..row.first + row.count].iter().enumerate() {
+            for (n, wave) in self.pairs[row.first..row.first + row.count].iter().enumerate() {
                 let k_z = n as f64 * unit;
                 for (energy, k_z) in wave.energies().into_iter().zip([k_z, -k_z]).filter(|(energy, _)| *energy != 0.0) {
                     let k = Vector([row.k[0], row.k[1], k_z]);
@@ -171,11 +171,11 @@ impl Waves {
 
     /// `sum (1 - K^2/2 alpha^2) w |S|^2`.
     pub(super) fn virial(&self, alpha: f64) -> f64 {
-        self.waves.iter().map(|wave| wave.energy() * (1.0 - wave.k_squared / (2.0 * alpha * alpha))).sum()
+        self.pairs.iter().map(|wave| wave.energy() * (1.0 - wave.k_squared / (2.0 * alpha * alpha))).sum()
     }
 }
 
-impl Wave {
+impl Pair {
     fn energy(&self) -> f64 {
         self.energies().iter().sum()
     }
@@ -273,7 +273,7 @@ impl Kernel for Push<'_> {
             let a = across(row, phases, orders);
             let (mut along, mut up) = ([0.0; LANES], [0.0; LANES]);
             let z = &phases[orders[0] + orders[1]..];
-            for (n, (wave, z)) in waves.waves[row.first..row.first + row.count].iter().zip(z).enumerate() {
+            for (n, (wave, z)) in waves.pairs[row.first..row.first + row.count].iter().zip(z).enumerate() {
                 let both = up_and_down(&a, z);
                 let [c, s, c_down, s_down] = wave.amplitude;
                 let (w, w_down) = (2.0 * wave.weight[0], 2.0 * wave.weight[1]);
