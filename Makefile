@@ -18,8 +18,9 @@ test: setup-test ## Every test: units, physics against theory, pictures, the com
 	$(CARGO) test --release --locked --workspace
 	@scripts/check-rooms.sh
 
-soak: ## An hour or so: 10^9 collisions, 10^8 contacts of grains; nothing may drift, sink or stall
+soak: ## An hour or so: 10^9 collisions, 10^8 contacts of grains, 10^5 periods of three bodies; nothing may drift, sink or stall
 	$(CARGO) test --release --locked -p corpuscle-event --test soak -- --ignored --nocapture --test-threads=1
+	$(CARGO) test --release --locked -p corpuscle-time --test soak -- --ignored --nocapture --test-threads=1
 
 lint: ## Format and house rules
 	$(CARGO) fmt --all --check

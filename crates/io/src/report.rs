@@ -10,7 +10,7 @@ use std::fmt::Write;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use corpuscle_experiments::{Table, Value};
-use corpuscle_observe::{Check, Verdict};
+use corpuscle_observe::{Chart, Check, Verdict};
 
 use crate::number::{Rounded, grouped, rounded, significant, typeset};
 use crate::{Ending, Picture, Record, VERSION};
@@ -49,6 +49,20 @@ pub fn html(record: &Record) -> String {
         record.scenario.settings.seed
     );
     page
+}
+
+/// A chart as an SVG file of its own, with the report's colours for light and dark screens.
+pub fn chart_file(chart: &Chart) -> String {
+    let drawn = chart::svg(chart);
+    let inside = drawn.strip_prefix("<svg").unwrap_or(&drawn);
+    let (attributes, rest) = inside.split_once('>').unwrap_or((inside, ""));
+    let fonts = "font-family=\"Inter, 'Segoe UI', Helvetica, Arial, 'DejaVu Sans', sans-serif\" font-size=\"12.5\"";
+    let ground = "<rect x=\"-8\" y=\"-8\" width=\"656\" height=\"416\" style=\"fill: var(--paper)\"/>";
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"chart\" width=\"840\" {fonts}{attributes}>\n\
+         <title>{}</title>\n<style>\n{STYLE}</style>\n{ground}{rest}\n",
+        escape(&chart.title)
+    )
 }
 
 fn header(record: &Record, title: &str) -> String {

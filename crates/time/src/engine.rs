@@ -5,8 +5,8 @@ use std::ops::ControlFlow;
 use corpuscle_core::{Axis, Boundary, Engine, Failure, Invalid, Observer, Particles, Vector};
 
 use crate::constraint::{Drive, Held, Pin};
-use crate::force::Force;
-use crate::integrator::{Integrator, Stepper};
+use crate::force::{Force, Tensor, add_product};
+use crate::integrator::{Integrator, Link, Stepper};
 use crate::system::System;
 
 /// A caller's time may fall short of the end of a step by this share of it: the rounding of the caller's sums.
@@ -40,6 +40,7 @@ struct Kept<const D: usize> {
     velocity: Vec<Vector<D>>,
     images: Vec<[i64; D]>,
     acceleration: Vec<Vector<D>>,
+    links: Vec<Link>,
     fresh: bool,
 }
 
@@ -133,6 +134,12 @@ impl<const D: usize> TimeDriven<D> {
         self.kinetic_energy() + self.potential_energy()
     }
 
+    /// What the equations of motion conserve: [`energy`](Self::energy) and, with a Nose-Hoover chain, what its links hold,
+    /// `sum Q_k v_k^2/2 + f k T eta_1 + k T (eta_2 + ... + eta_M)`. Other thermostats exchange heat that is not counted.
+    pub fn conserved_energy(&self) -> f64 {
+        self.energy() + self.stepper.energy()
+    }
+
     /// Total momentum.
     pub fn momentum(&self) -> Vector<D> {
         self.system.particles.momentum()
@@ -147,6 +154,27 @@ impl<const D: usize> TimeDriven<D> {
     pub fn virial(&self) -> f64 {
         let System { boundary, particles, forces, .. } = &self.system;
         forces.iter().map(|force| force.virial(self.time, boundary, particles)).sum()
+    }
+
+    /// Pressure tensor `P_ab = (sum m v_a v_b + sum over pairs of r_a F_b)/V` with the volume of the box (Irving and Kirkwood 1950,
+    /// doi:10.1063/1.1747782); its trace over `D` is the pressure. `None` where a force does not know its virial tensor, as the
+    /// tree's.
+    pub fn pressure_tensor(&self) -> Option<Tensor<D>> {
+        let System { boundary, particles, forces, .. } = &self.system;
+        let mut tensor = [[0.0; D]; D];
+        for (&v, &m) in particles.velocity.iter().zip(&particles.mass) {
+            add_product(&mut tensor, v, v * m);
+        }
+        for force in forces {
+            let virial = force.virial_tensor(self.time, boundary, particles)?;
+            for k in 0..D {
+                for l in 0..D {
+                    tensor[k][l] += virial[k][l];
+                }
+            }
+        }
+        let volume = boundary.volume();
+        Some(tensor.map(|row| row.map(|sum| sum / volume)))
     }
 
     /// How often particle `i` went through the upper minus the lower
@@ -213,6 +241,8 @@ impl<const D: usize> TimeDriven<D> {
         self.kept.images.clone_from(images);
         self.kept.acceleration.clone_from(acceleration);
         self.kept.fresh = *fresh;
+        self.kept.links.clear();
+        self.kept.links.extend_from_slice(self.stepper.links());
     }
 
     fn restore(&mut self) {
@@ -223,6 +253,7 @@ impl<const D: usize> TimeDriven<D> {
         images.clone_from(&self.kept.images);
         acceleration.clone_from(&self.kept.acceleration);
         *fresh = self.kept.fresh;
+        self.stepper.set_links(&self.kept.links);
     }
 
     /// Every whole step of length `dt` up to `to`.

@@ -1,8 +1,12 @@
 //! Forces, one file each.
 
+mod born_mayer;
 mod central;
+mod complementary_error;
+mod coulomb;
 mod drag;
 mod drive;
+mod ewald;
 mod exponential;
 mod force_shifted;
 mod gravity;
@@ -11,14 +15,18 @@ mod inverse_power;
 mod lennard_jones;
 mod morse;
 mod pair;
+mod screened_charge;
 mod spring;
 mod uniform;
 mod wca;
 mod yukawa;
 
+pub use born_mayer::BornMayer;
 pub use central::CentralField;
+pub use coulomb::Coulomb;
 pub use drag::Drag;
 pub use drive::DrivingForce;
+pub use ewald::Ewald;
 pub use force_shifted::ForceShifted;
 pub use gravity::{Gravity, TreeGravity};
 pub use harmonic_repulsion::HarmonicRepulsion;
@@ -32,6 +40,18 @@ pub use wca::WeeksChandlerAndersen;
 pub use yukawa::Yukawa;
 
 use corpuscle_core::{Boundary, Invalid, Particles, Vector};
+
+/// A square of numbers, row by row.
+pub type Tensor<const D: usize> = [[f64; D]; D];
+
+/// Adds the products of the components of two vectors.
+pub(crate) fn add_product<const D: usize>(tensor: &mut Tensor<D>, a: Vector<D>, b: Vector<D>) {
+    for k in 0..D {
+        for l in 0..D {
+            tensor[k][l] += a[k] * b[l];
+        }
+    }
+}
 
 /// Something that accelerates particles.
 ///
@@ -63,6 +83,13 @@ pub trait Force<const D: usize>: Send {
 
     /// Virial `sum over pairs of r_ij . F_ij`; zero for a force from outside.
     fn virial(&self, time: f64, boundary: &Boundary<D>, particles: &Particles<D>) -> f64;
+
+    /// Virial tensor `sum over pairs of r_ij F_ij`, components of the arrow by rows: its trace is the virial. `None` where it is
+    /// not known.
+    fn virial_tensor(&self, time: f64, boundary: &Boundary<D>, particles: &Particles<D>) -> Option<Tensor<D>> {
+        let _ = (time, boundary, particles);
+        None
+    }
 
     /// Checks that the force makes sense for this box and these particles.
     ///

@@ -6,6 +6,7 @@ mod dormand_prince_table;
 mod gauss_radau;
 mod gauss_radau_table;
 mod kepler;
+mod nose_hoover;
 mod runge_kutta;
 mod thermal;
 mod wisdom_holman;
@@ -17,6 +18,8 @@ use crate::system::System;
 use composition::Composition;
 use dormand_prince::DormandPrince;
 use gauss_radau::GaussRadau;
+use nose_hoover::Chain;
+pub(crate) use nose_hoover::Link;
 use runge_kutta::RungeKutta;
 use thermal::Bath;
 use wisdom_holman::WisdomHolman;
@@ -115,6 +118,23 @@ pub enum Integrator {
         /// Seed of the noise.
         seed: u64,
     },
+    /// Velocity Verlet with a chain of Nose-Hoover thermostats (Martyna, Klein and Tuckerman 1992, doi:10.1063/1.463940; Martyna,
+    /// Tuckerman, Tobias and Klein 1996, doi:10.1080/00268979600100761): canonical without random numbers, reversible, and with a
+    /// conserved quantity, [`TimeDriven::conserved_energy`](crate::TimeDriven::conserved_energy). A single link fails where the motion
+    /// is too regular, as in one harmonic oscillator; three or more do not.
+    NoseHoover {
+        /// Time step.
+        dt: f64,
+        /// Temperature `k T`.
+        temperature: f64,
+        /// Time scale `tau` on which heat flows: inertias are `f k T tau^2` for the first link, `k T tau^2` for the others. Of
+        /// the order of the motion's own period.
+        relaxation_time: f64,
+        /// Velocities that move freely, `f`: `D N`, or `D (N - 1)` where the total momentum is conserved and zero.
+        degrees_of_freedom: u32,
+        /// Links of the chain, 1 to 64.
+        links: u32,
+    },
     /// Dormand and Prince's Runge-Kutta method of order 8 that chooses its step by errors of order 5 and 3, with dense output
     /// of order 7 (Hairer, Norsett and Wanner 1993, doi:10.1007/978-3-540-78862-1). Needs smooth forces, not very precise
     /// ones: hard walls are refused.
@@ -180,6 +200,7 @@ impl Integrator {
             Self::Langevin { .. } => "langevin",
             Self::Brownian { .. } => "brownian",
             Self::StochasticRescaling { .. } => "stochastic-rescaling",
+            Self::NoseHoover { .. } => "nose-hoover",
         }
     }
 
@@ -191,7 +212,8 @@ impl Integrator {
             | Self::WisdomHolman { .. }
             | Self::Langevin { .. }
             | Self::Brownian { .. }
-            | Self::StochasticRescaling { .. } => 2,
+            | Self::StochasticRescaling { .. }
+            | Self::NoseHoover { .. } => 2,
             Self::RungeKutta4 { .. } | Self::Yoshida4 { .. } => 4,
             Self::Yoshida6 { .. } => 6,
             Self::Yoshida8 { .. } | Self::DormandPrince8 { .. } => 8,
@@ -225,7 +247,8 @@ impl Integrator {
             | Self::WisdomHolman { dt }
             | Self::Langevin { dt, .. }
             | Self::Brownian { dt, .. }
-            | Self::StochasticRescaling { dt, .. } => Some(dt),
+            | Self::StochasticRescaling { dt, .. }
+            | Self::NoseHoover { dt, .. } => Some(dt),
             Self::GaussRadau15 { .. } | Self::DormandPrince8 { .. } => None,
         }
     }
@@ -252,6 +275,16 @@ impl Integrator {
                 positive("relaxation time", relaxation_time)?;
                 positive("degrees of freedom", f64::from(degrees_of_freedom))
             }
+            Self::NoseHoover { dt, temperature, relaxation_time, degrees_of_freedom, links } => {
+                positive("dt", dt)?;
+                positive("temperature", temperature)?;
+                positive("relaxation time", relaxation_time)?;
+                positive("degrees of freedom", f64::from(degrees_of_freedom))?;
+                if !(1..=64).contains(&links) {
+                    return Err(Invalid::new("links", links, "1 to 64"));
+                }
+                Ok(())
+            }
             _ => self.dt().map_or(Ok(()), |dt| positive("dt", dt)),
         }
     }
@@ -271,6 +304,9 @@ impl Integrator {
             Self::Brownian { temperature, friction, seed, .. } => Stepper::Bath(Bath::Brownian { temperature, friction, seed }),
             Self::StochasticRescaling { temperature, relaxation_time, degrees_of_freedom, seed, .. } => {
                 Stepper::Bath(Bath::Rescaling { temperature, relaxation_time, degrees_of_freedom, seed })
+            }
+            Self::NoseHoover { temperature, relaxation_time, degrees_of_freedom, links, .. } => {
+                Stepper::NoseHoover(Chain::new(temperature, relaxation_time, degrees_of_freedom, links))
             }
             Self::DormandPrince8 { tolerance, first_step } => {
                 Stepper::Adaptive(Box::new(DormandPrince::new(tolerance, first_step)))
@@ -309,6 +345,7 @@ pub(crate) enum Stepper<const D: usize> {
     RungeKutta(RungeKutta<D>),
     WisdomHolman(WisdomHolman<D>),
     Bath(Bath),
+    NoseHoover(Chain),
     Adaptive(Box<dyn Adaptive<D>>),
 }
 
@@ -327,6 +364,7 @@ impl<const D: usize> Stepper<D> {
             Self::Adaptive(method) => method.restart(system, time),
             Self::WisdomHolman(map) => map.admit(system)?,
             Self::Bath(_) => Bath::admit(system)?,
+            Self::NoseHoover(_) => Chain::admit(system)?,
             Self::Composition(_) | Self::RungeKutta(_) => {}
         }
         Ok(())
@@ -339,8 +377,26 @@ impl<const D: usize> Stepper<D> {
             Self::RungeKutta(method) => method.step(system, start, end, dt),
             Self::WisdomHolman(map) => map.step(system, start, end, dt),
             Self::Bath(bath) => bath.step(system, start, end, dt),
+            Self::NoseHoover(chain) => chain.step(system, start, end, dt),
             Self::Adaptive(_) => Ok(()), // chooses its own steps: see `TimeDriven::advance`
         }
+    }
+
+    /// The state of a heat bath that has one.
+    pub(crate) fn links(&self) -> &[Link] {
+        if let Self::NoseHoover(chain) = self { &chain.links } else { &[] }
+    }
+
+    /// Puts such a bath back into a state it had.
+    pub(crate) fn set_links(&mut self, links: &[Link]) {
+        if let Self::NoseHoover(chain) = self {
+            chain.links.copy_from_slice(links);
+        }
+    }
+
+    /// Energy that is neither kinetic nor potential, but conserved together with these.
+    pub(crate) fn energy(&self) -> f64 {
+        if let Self::NoseHoover(chain) = self { chain.energy() } else { 0.0 }
     }
 }
 

@@ -39,8 +39,9 @@ mod system;
 pub use constraint::{Drive, Pin, Signal};
 pub use engine::TimeDriven;
 pub use force::{
-    CentralField, Drag, DrivingForce, Force, ForceShifted, Gravity, HarmonicRepulsion, InversePower, LennardJones, Morse,
-    PairForce, PairPotential, Spring, Springs, TreeGravity, UniformField, WeeksChandlerAndersen, Yukawa,
+    BornMayer, CentralField, Coulomb, Drag, DrivingForce, Ewald, Force, ForceShifted, Gravity, HarmonicRepulsion, InversePower,
+    LennardJones, Morse, PairForce, PairPotential, Spring, Springs, Tensor, TreeGravity, UniformField, WeeksChandlerAndersen,
+    Yukawa,
 };
 pub use integrator::Integrator;
 pub use neighbours::Neighbours;

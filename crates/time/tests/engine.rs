@@ -5,7 +5,10 @@
 use std::ops::ControlFlow;
 
 use corpuscle_core::{Axis, Boundary, Contact, Engine, Meeting, Observer, Particles, Partition, Random, Vector};
-use corpuscle_time::{Force, Gravity, Integrator, PairForce, TimeDriven, UniformField, WeeksChandlerAndersen};
+use corpuscle_time::{
+    DrivingForce, Force, Gravity, Integrator, InversePower, PairForce, Signal, Spring, Springs, TimeDriven, UniformField,
+    WeeksChandlerAndersen,
+};
 
 #[derive(Default)]
 struct Contacts(Vec<Contact<2>>);
@@ -117,6 +120,64 @@ fn a_particle_faster_than_the_box_is_wide_is_a_failure() {
     let failure = engine.advance(1.0, &mut ()).unwrap_err();
     assert!(failure.to_string().contains("particle 0") && failure.cause.contains("smaller dt"), "{failure}");
     assert_eq!((engine.time(), engine.particles()), (0.0, &one([5.0, 2.0], [1.0, 1e4])));
+}
+
+/// A force that overflows, whatever the integrator: two particles shot at each other meet in one step, or a spring is so stiff that
+/// velocities grow without bound. Named are one of them, the time and the cause; left is the last good state, bit for bit.
+#[test]
+fn a_force_that_overflows_is_a_failure_that_leaves_the_last_good_state() {
+    let dt = 0.01;
+    for integrator in [Integrator::VelocityVerlet { dt }, Integrator::Yoshida4 { dt }, Integrator::RungeKutta4 { dt }] {
+        for stiff in [false, true] {
+            let build = || {
+                let mut particles = Particles::<2>::new();
+                particles.push(Vector([-50.0, 30.0]), Vector([0.3, 0.0]), 1.0, 0.0, 0);
+                // They meet after 47 steps.
+                particles.push(Vector([-1e5 * dt * 47.0, 0.0]), Vector([1e5, 0.0]), 1.0, 0.0, 0);
+                particles.push(Vector([1e3 * dt * 47.0, 0.0]), Vector([-1e3, 0.0]), 1.0, 0.0, 0);
+                let force: Box<dyn Force<2>> = if stiff {
+                    Box::new(Springs::new(vec![Spring::new(1, 2, 1e9, 1.0)]))
+                } else {
+                    Box::new(PairForce::new(InversePower { epsilon: 1.0, sigma: 1.0, exponent: 200, cutoff: 2.0 }))
+                };
+                let space = Boundary::new([-1e6; 2], [1e6; 2], Axis::Open);
+                TimeDriven::new(space, particles, vec![force], integrator).unwrap()
+            };
+            let mut engine = build();
+            let failure = engine.advance(100.0, &mut ()).unwrap_err();
+            println!("{}, stiff {stiff}: {failure}", integrator.name());
+            assert!(matches!(failure.particle, Some(1 | 2)), "{failure}");
+            assert!(failure.cause.contains("overflowed") && failure.cause.contains("smaller dt"), "{failure}");
+            assert!((failure.time - engine.time() - dt).abs() < 1e-9, "{failure}, but the time is {}", engine.time());
+            assert!(engine.steps() > 0);
+            let mut again = build();
+            again.advance(engine.time(), &mut ()).unwrap();
+            assert_eq!((engine.snapshot(), engine.steps()), (again.snapshot(), again.steps()));
+            assert!(engine.snapshot().validate().is_ok());
+        }
+    }
+}
+
+/// A particle that leaves through a wall after many good steps: the steps before it are not lost.
+#[test]
+fn a_particle_that_leaves_is_a_failure_that_keeps_the_steps_before_it() {
+    let build = || {
+        let kick = DrivingForce {
+            particle: 0,
+            direction: Vector([0.0, 1.0]),
+            signal: Signal::Pulse { amplitude: 1e6, centre: 0.73, width: 0.01 },
+        };
+        let forces: Vec<Box<dyn Force<2>>> = vec![Box::new(kick)];
+        TimeDriven::new(room(Axis::Walls), one([5.0, 2.0], [1.0, 0.3]), forces, Integrator::VelocityVerlet { dt: 0.01 }).unwrap()
+    };
+    let mut engine = build();
+    let failure = engine.advance(2.0, &mut ()).unwrap_err();
+    println!("{failure}");
+    assert!(failure.particle == Some(0) && failure.cause.contains("through the wall across axis 1"), "{failure}");
+    assert!(engine.steps() > 60 && (failure.time - engine.time() - 0.01).abs() < 1e-12, "{failure}, {}", engine.time());
+    let mut again = build();
+    again.advance(engine.time(), &mut ()).unwrap();
+    assert_eq!(engine.snapshot(), again.snapshot());
 }
 
 #[test]

@@ -78,11 +78,10 @@ fn velocity_verlet_keeps_order_two_with_drag() {
     assert_order("velocity-verlet with drag", 2, error, 1.0 / 16.0);
 }
 
-/// Over `10^5` steps a symplectic integrator's mean energy moves by less than the energy swings within one orbit; the
+/// Over `10^6` steps a symplectic integrator's mean energy moves by a tenth of what the energy swings within one orbit, and it swings no wider; the
 /// same test catches an integrator that is not symplectic.
 #[test]
 fn symplectic_integrators_keep_energy_bounded() {
-    let dt = 0.05;
     let e = ECCENTRICITY;
     // The planet has no mass: its energy per mass, by hand.
     let energy = |engine: &TimeDriven<2>| {
@@ -91,8 +90,10 @@ fn symplectic_integrators_keep_energy_bounded() {
     };
     for name in Integrator::NAMES
         .iter()
-        .filter(|name| !EXACT_FOR_TWO.contains(name) && Integrator::from_name(name, dt).unwrap().dt().is_some())
+        .filter(|name| !EXACT_FOR_TWO.contains(name) && Integrator::from_name(name, 1.0).unwrap().dt().is_some())
     {
+        // At order 8 the same step would leave nothing but roundings.
+        let dt = if *name == "yoshida-8" { 0.2 } else { 0.05 };
         let integrator = Integrator::from_name(name, dt).unwrap();
         let mut engine = planet(integrator);
         let mut stretch = |from: u32, to: u32| {
@@ -105,11 +106,10 @@ fn symplectic_integrators_keep_energy_bounded() {
             (high - low, sum / f64::from(to - from))
         };
         let (swing, first) = stretch(0, 10_000);
-        stretch(10_000, 90_000);
-        let (_, last) = stretch(90_000, 100_000);
-        let bounded = (last - first).abs() < swing;
+        let (later, last) = stretch(990_000, 1_000_000);
+        let bounded = (last - first).abs() < 0.1 * swing && later < 1.1 * swing;
         println!("{name}: swing {swing:.2e}, drift {:.2e}", (last - first).abs());
-        // Runge-Kutta drifts, but at this step still swings more than it drifts in a tenth of the run.
+        // Runge-Kutta drifts, but at this step still swings more than it drifts in a hundredth of the run.
         let per_orbit = swing / (10_000.0 * dt / std::f64::consts::TAU);
         let drifts = (last - first).abs() > per_orbit;
         assert!(bounded || !integrator.is_symplectic(), "{name}: {first} to {last}, swing {swing}");

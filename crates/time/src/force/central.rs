@@ -2,7 +2,7 @@
 
 use corpuscle_core::{Axis, Boundary, Invalid, Particles, Vector};
 
-use super::{Force, finite};
+use super::{Force, Tensor, finite};
 
 /// The acceleration `a = -g r^n` towards a centre at the distance `r`: `U = m g r^(n+1)/(n+1)`, or `m g ln r` for `n = -1`.
 ///
@@ -51,6 +51,10 @@ impl<const D: usize> Force<D> for CentralField<D> {
 
     fn virial(&self, _: f64, _: &Boundary<D>, _: &Particles<D>) -> f64 {
         0.0
+    }
+
+    fn virial_tensor(&self, _: f64, _: &Boundary<D>, _: &Particles<D>) -> Option<Tensor<D>> {
+        Some([[0.0; D]; D])
     }
 
     fn validate(&self, boundary: &Boundary<D>, _: &Particles<D>) -> Result<(), Invalid> {

@@ -2,7 +2,7 @@
 
 use corpuscle_core::{Boundary, Invalid, Particles, Vector};
 
-use super::{Force, not_negative};
+use super::{Force, Tensor, not_negative};
 
 /// Linear drag `a = -gamma v`: velocities decay as `exp(-gamma t)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,6 +28,10 @@ impl<const D: usize> Force<D> for Drag {
 
     fn virial(&self, _: f64, _: &Boundary<D>, _: &Particles<D>) -> f64 {
         0.0
+    }
+
+    fn virial_tensor(&self, _: f64, _: &Boundary<D>, _: &Particles<D>) -> Option<Tensor<D>> {
+        Some([[0.0; D]; D])
     }
 
     fn validate(&self, _: &Boundary<D>, _: &Particles<D>) -> Result<(), Invalid> {

@@ -2,7 +2,7 @@
 
 use corpuscle_core::{Boundary, Invalid, Particles, Vector};
 
-use super::{Force, finite, massive};
+use super::{Force, Tensor, finite, massive};
 use crate::constraint::Signal;
 
 /// The force `F(t) = s(t) n` on one particle. To prescribe a displacement instead, see [`Drive`](crate::Drive).
@@ -31,6 +31,10 @@ impl<const D: usize> Force<D> for DrivingForce<D> {
 
     fn virial(&self, _: f64, _: &Boundary<D>, _: &Particles<D>) -> f64 {
         0.0
+    }
+
+    fn virial_tensor(&self, _: f64, _: &Boundary<D>, _: &Particles<D>) -> Option<Tensor<D>> {
+        Some([[0.0; D]; D])
     }
 
     fn validate(&self, _: &Boundary<D>, particles: &Particles<D>) -> Result<(), Invalid> {

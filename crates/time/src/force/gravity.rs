@@ -9,7 +9,7 @@ mod lanes;
 mod scale;
 mod tree;
 
-use super::{Force, finite, not_negative};
+use super::{Force, Tensor, add_product, finite, not_negative};
 use crate::instructions::Instructions;
 use direct::Masses;
 use grains::attract_grains;
@@ -107,6 +107,19 @@ impl<const D: usize> Force<D> for Gravity<D> {
     fn virial(&self, _: f64, _: &Boundary<D>, particles: &Particles<D>) -> f64 {
         let softening_squared = self.softening * self.softening;
         self.sum_over_pairs(particles, |strength, r_squared| -strength * r_squared * inverse_cube(r_squared, softening_squared))
+    }
+
+    fn virial_tensor(&self, _: f64, _: &Boundary<D>, particles: &Particles<D>) -> Option<Tensor<D>> {
+        let mut tensor = [[0.0; D]; D];
+        let (r, m) = (&particles.position, &particles.mass);
+        for i in (0..r.len()).filter(|&i| m[i] > 0.0) {
+            for j in (0..i).filter(|&j| m[j] > 0.0) {
+                let arrow = r[i] - r[j];
+                let pull = self.constant * m[i] * m[j] * inverse_cube(arrow.norm_squared(), self.softening * self.softening);
+                add_product(&mut tensor, arrow, arrow * -pull);
+            }
+        }
+        Some(tensor)
     }
 
     fn validate(&self, boundary: &Boundary<D>, particles: &Particles<D>) -> Result<(), Invalid> {

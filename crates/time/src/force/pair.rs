@@ -1,11 +1,12 @@
 //! Short-range forces between all pairs, from one potential or from a table of them.
 
 mod kernel;
+mod tensor;
 
 use corpuscle_core::{Axis, Boundary, Invalid, Particles, Vector};
 use rayon::prelude::*;
 
-use super::{Force, massive, positive};
+use super::{Force, Tensor, massive, positive};
 use crate::exact::{BITS, Quantum};
 use crate::image::NearestImage;
 use crate::instructions::Instructions;
@@ -272,6 +273,10 @@ impl<P: PairPotential, const D: usize> Force<D> for PairForce<P, D> {
 
     fn virial(&self, _: f64, boundary: &Boundary<D>, particles: &Particles<D>) -> f64 {
         self.sums(boundary, particles)[1]
+    }
+
+    fn virial_tensor(&self, _: f64, boundary: &Boundary<D>, particles: &Particles<D>) -> Option<Tensor<D>> {
+        Some(tensor::virial_tensor(&self.table, self.species, boundary, particles))
     }
 
     fn validate(&self, boundary: &Boundary<D>, particles: &Particles<D>) -> Result<(), Invalid> {

@@ -4,7 +4,7 @@ use corpuscle_core::{Axis, Boundary, Invalid, Particles, Vector};
 
 mod run;
 
-use super::{Force, finite, massive, not_negative};
+use super::{Force, Tensor, add_product, finite, massive, not_negative};
 use crate::image::NearestImage;
 use crate::instructions::Instructions;
 use run::{Run, Stretch};
@@ -144,6 +144,12 @@ impl<const D: usize> Force<D> for Springs {
 
     fn virial(&self, _: f64, boundary: &Boundary<D>, particles: &Particles<D>) -> f64 {
         self.arrows(boundary, particles).map(|(spring, r)| r.dot(spring.elastic(r))).sum()
+    }
+
+    fn virial_tensor(&self, _: f64, boundary: &Boundary<D>, particles: &Particles<D>) -> Option<Tensor<D>> {
+        let mut tensor = [[0.0; D]; D];
+        self.arrows(boundary, particles).for_each(|(spring, r)| add_product(&mut tensor, r, spring.elastic(r)));
+        Some(tensor)
     }
 
     fn validate(&self, boundary: &Boundary<D>, particles: &Particles<D>) -> Result<(), Invalid> {

@@ -65,6 +65,10 @@ fn check_all<const D: usize>() {
         check(boundary, &particles, &mut PairForce::between_species(3, between));
         check(boundary, &particles, &mut Springs::new(Clone::clone(&springs)));
     }
+    let born_mayer = BornMayer { epsilon: 1.2, sigma: 1.1, hardness: 0.3, dispersion: 0.4, higher_dispersion: 0.2, cutoff: 2.41 };
+    check(&open, &particles, &mut PairForce::new(born_mayer));
+    let charges: Vec<f64> = (0..particles.len()).map(|i| [1.0, -2.0, 0.5][i % 3]).collect();
+    check(&open, &particles, &mut Coulomb::new(1.3, charges));
     check(&open, &particles, &mut Gravity::new(1.5, 0.0));
     check(&open, &particles, &mut Gravity::new(1.5, 0.2));
     check(&open, &particles, &mut UniformField::new(Vector::from_fn(|k| 0.3 - k as f64)));
@@ -98,6 +102,47 @@ fn pair_forces_do_not_depend_on_the_neighbour_list() {
     assert!(all.neighbours().len() > 3 * tight.neighbours().len());
     assert_eq!(accelerations[0], accelerations[1]);
     assert_eq!(tight.energy(0.0, &boundary, &particles), all.energy(0.0, &boundary, &particles));
+}
+
+/// Charges against the plain sum over pairs, with remainders and more than one group of lanes; the same bits from one thread and three.
+#[test]
+fn charges_in_open_space_push_as_coulomb_says() {
+    let mut random = Random::new(9, 0);
+    let (mut ions, mut charges) = (Particles::<3>::new(), vec![]);
+    for _ in 0..701 {
+        ions.push(Vector::from_fn(|_| random.normal()), Vector::ZERO, 1.0 + random.uniform(), 0.0, 0);
+        charges.push(random.normal());
+    }
+    let open = Boundary::new([-9.0; 3], [9.0; 3], Axis::Open);
+    let remainder: Vec<Vector<3>> = (0..701).map(|_| Vector::from_fn(|_| 1e-3 * random.normal())).collect();
+    for remainder in [&[][..], &remainder] {
+        let with = |threads: usize| {
+            let mut acceleration = vec![Vector::ZERO; 701];
+            let mut force = Coulomb::new(0.7, charges.clone());
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| force.accelerate_precisely(0.0, &open, &ions, remainder, &mut acceleration));
+            acceleration
+        };
+        let found = with(1);
+        assert_eq!(found, with(3));
+        let place = |i: usize| ions.position[i] + remainder.get(i).copied().unwrap_or(Vector::ZERO);
+        let (mut net, mut size) = (Vector::<3>::ZERO, 0.0);
+        for i in 0..701 {
+            let (mut expected, mut magnitude) = (Vector::ZERO, 0.0);
+            for j in (0..701).filter(|&j| j != i) {
+                let arrow = place(i) - place(j);
+                let push = arrow * (0.7 * charges[i] * charges[j] / ions.mass[i] / arrow.norm().powi(3));
+                expected += push;
+                magnitude += push.norm();
+            }
+            // Roundings of a sum of n terms walk at random; near pairs lose what the rounding of their places leaves.
+            let bound = magnitude * f64::EPSILON * (1e3 + 701f64.sqrt());
+            assert!((found[i] - expected).norm() < bound, "{i}: {:?} {expected:?}", found[i]);
+            net += found[i] * ions.mass[i];
+            size += magnitude * ions.mass[i];
+        }
+        assert!(net.norm() < 30.0 * f64::EPSILON * size, "{}", net.norm());
+    }
 }
 
 /// Grains go through another kernel than masses: a mass too small to matter must feel the same as a grain.

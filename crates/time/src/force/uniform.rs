@@ -2,7 +2,7 @@
 
 use corpuscle_core::{Boundary, Invalid, Particles, Vector};
 
-use super::{Force, finite};
+use super::{Force, Tensor, finite};
 
 /// The same acceleration `g` everywhere, as gravity near the ground: `U = -sum m g . r`.
 ///
@@ -37,6 +37,10 @@ impl<const D: usize> Force<D> for UniformField<D> {
 
     fn virial(&self, _: f64, _: &Boundary<D>, _: &Particles<D>) -> f64 {
         0.0
+    }
+
+    fn virial_tensor(&self, _: f64, _: &Boundary<D>, _: &Particles<D>) -> Option<Tensor<D>> {
+        Some([[0.0; D]; D])
     }
 
     fn validate(&self, boundary: &Boundary<D>, _: &Particles<D>) -> Result<(), Invalid> {

@@ -27,7 +27,7 @@ const OUTER: f64 = 1.351_207_191_959_657_6;
 const MIDDLE: f64 = -1.702_414_383_919_315_3;
 
 /// `w_1, w_0, w_1`, where `2 w_1 + w_0 = 1` and `2 w_1^3 + w_0^3 = 0`.
-const LENGTHS_4: [f64; 3] = [OUTER, MIDDLE, OUTER];
+pub(super) const LENGTHS_4: [f64; 3] = [OUTER, MIDDLE, OUTER];
 
 /// Yoshida's solution A of order 6 (1990, doi:10.1016/0375-9601(90)90092-3, table 1).
 #[allow(clippy::excessive_precision)] // digits to check against other tables

@@ -8,7 +8,7 @@
 
 use corpuscle_core::{Failure, Vector};
 
-use super::gauss_radau_table::{BINOMIAL, NODES, ORDER, Table};
+use super::gauss_radau_table::{BINOMIAL, END_WEIGHTS, NODES, ORDER, Table};
 use super::{Adaptive, too_close};
 use crate::system::System;
 
@@ -26,6 +26,8 @@ struct Body<const D: usize> {
     position: Sum<D>,
     velocity: Sum<D>,
     acceleration: Vector<D>,
+    /// Accelerations at the nodes, less that at the start.
+    change: [Vector<D>; ORDER],
     /// Coefficients of the step's polynomial, and the same in Newton's form.
     b: Coefficients<D>,
     g: Coefficients<D>,
@@ -35,7 +37,10 @@ struct Body<const D: usize> {
     last_predicted: Coefficients<D>,
 }
 
-/// A sum that remembers its rounding error (Kahan 1965, doi:10.1145/363707.363723).
+/// A sum to twice the precision: its value and what rounding took from it (Dekker 1971, doi:10.1007/BF01397083).
+///
+/// Kahan's summation first adds what was lost to the next increment. That rounds it to the increment's digits, among which ties
+/// are frequent: something far too small to count then decides all ties one way, and ten times its own size is added.
 #[derive(Clone, Copy, Debug)]
 struct Sum<const D: usize> {
     value: Vector<D>,
@@ -44,12 +49,12 @@ struct Sum<const D: usize> {
 
 impl<const D: usize> Sum<D> {
     fn add(&mut self, increment: Vector<D>) {
-        let increment = increment + self.lost;
         let sum = self.value + increment;
-        // What was lost, whichever of the two is larger (Knuth 1969).
         let taken = sum - self.value;
-        self.lost = (self.value - (sum - taken)) + (increment - taken);
-        self.value = sum;
+        // What this addition loses, whichever of the two is larger (Knuth 1969).
+        let lost = self.lost + ((self.value - (sum - taken)) + (increment - taken));
+        self.value = sum + lost;
+        self.lost = lost - (self.value - sum);
     }
 }
 
@@ -82,10 +87,7 @@ impl<const D: usize> GaussRadau<D> {
         if self.stepped {
             let dt = self.taken;
             for (i, (body, &after)) in self.bodies.iter_mut().zip(&self.after).enumerate() {
-                let (dr, dv) = increments(body, dt, 1.0);
-                body.position.add(dr);
-                body.position.add(body.velocity.value * dt + body.velocity.lost * dt);
-                body.velocity.add(dv);
+                (body.position, body.velocity) = end(body, dt);
                 body.acceleration = after;
                 body.last_b = body.b;
                 body.last_predicted = body.predicted;
@@ -138,6 +140,10 @@ impl<const D: usize> GaussRadau<D> {
     }
 
     /// Solves for the coefficients; returns the share of the last term in the acceleration.
+    ///
+    /// The share is of root mean squares over all components, which change smoothly along an orbit and not with the direction it
+    /// is looked at from. The largest component has kinks, and steps that depend on the phase with kinks may lock to a whole number a
+    /// period: the same points are then met over and over, and errors that else average out over all phases add up.
     fn iterate(&mut self, system: &mut System<D>, start: f64, dt: f64) -> f64 {
         let mut last_change = f64::INFINITY;
         for round in 0..ROUNDS {
@@ -149,7 +155,9 @@ impl<const D: usize> GaussRadau<D> {
                 system.hold(start + h * dt);
                 system.accelerate(start + h * dt, 0.0);
                 for (body, &a) in self.bodies.iter_mut().zip(&system.acceleration) {
-                    let mut g = (a - body.acceleration) * self.table.inverse_gap[node][0];
+                    let grown = a - body.acceleration;
+                    body.change[node - 1] = grown;
+                    let mut g = grown * self.table.inverse_gap[node][0];
                     for m in 1..node {
                         g = (g - body.g[m - 1]) * self.table.inverse_gap[node][m];
                     }
@@ -174,11 +182,10 @@ impl<const D: usize> GaussRadau<D> {
             }
             last_change = change;
         }
-        let (last_term, scale) = self
-            .bodies
-            .iter()
-            .zip(&system.acceleration)
-            .fold((0.0, 0.0), |(term, scale), (body, &a)| (largest(term, body.b[ORDER - 1]), largest(scale, a)));
+        let squares =
+            |(term, scale), (body, a): (&Body<D>, &Vector<D>)| (term + body.b[ORDER - 1].norm_squared(), scale + a.norm_squared());
+        let (last_term, scale) = self.bodies.iter().zip(&system.acceleration).fold((0.0, 0.0), squares);
+        let (last_term, scale) = (last_term.sqrt(), scale.sqrt());
         // Against accelerations; but what does not change the last bit of a velocity is no error. Without that, a kink in a
         // force (where a potential is cut off) asks for ever shorter steps while all else is at rest.
         let fastest = self.bodies.iter().fold(0.0, |fastest, body| largest(fastest, body.velocity.value));
@@ -187,7 +194,16 @@ impl<const D: usize> GaussRadau<D> {
     }
 
     fn place(&self, system: &mut System<D>, share: f64) {
-        self.place_within(system, share, self.taken);
+        if share != 1.0 {
+            return self.place_within(system, share, self.taken);
+        }
+        for (i, body) in self.bodies.iter().enumerate() {
+            let (position, velocity) = end(body, self.taken);
+            system.set_unwrapped(i, position.value);
+            system.remainder[i] = position.lost;
+            system.particles.velocity[i] = velocity.value;
+        }
+        (system.fresh, system.doubtful) = (false, true);
     }
 
     /// Puts the system's particles where the polynomial has them at the share `h` of the step.
@@ -218,6 +234,7 @@ impl<const D: usize> Adaptive<D> for GaussRadau<D> {
             position: exact(system.unwrapped(i)),
             velocity: exact(system.particles.velocity[i]),
             acceleration: Vector::ZERO,
+            change: zero,
             b: zero,
             g: zero,
             predicted: zero,
@@ -279,6 +296,23 @@ impl<const D: usize> Adaptive<D> for GaussRadau<D> {
             system.hold(time);
         }
     }
+}
+
+/// Position and velocity at the end of the step.
+fn end<const D: usize>(body: &Body<D>, dt: f64) -> (Sum<D>, Sum<D>) {
+    let sum = |of: usize, part: usize| {
+        let term = |sum, (change, weights): (&Vector<D>, &[[f64; 2]; 2])| sum + *change * weights[of][part];
+        body.change.iter().zip(&END_WEIGHTS).fold(Vector::ZERO, term)
+    };
+    let (mut position, mut velocity) = (body.position, body.velocity);
+    position.add((body.acceleration * 0.5 + sum(1, 0)) * (dt * dt));
+    position.add(velocity.value * dt);
+    position.add(velocity.lost * dt);
+    velocity.add((body.acceleration + sum(0, 0)) * dt);
+    // Apart from the rest, beside which they would be rounded away.
+    position.add(sum(1, 1) * (dt * dt));
+    velocity.add(sum(0, 1) * dt);
+    (position, velocity)
 }
 
 /// What the acceleration adds to `r_0 + v_0 h dt` and to `v_0` up to the share `h` of the step:

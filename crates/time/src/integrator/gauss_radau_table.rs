@@ -16,6 +16,22 @@ pub(super) const NODES: [f64; ORDER + 1] = [
     0.977_520_613_561_287_501_891_174_488_626,
 ];
 
+/// What the step's polynomial gives at its end: weights of `a(h_n) - a_0`, `n = 1..8`, in the velocity, `int L_n(h) dh`, and in the
+/// position, `int (1 - h) L_n(h) dh`, where `L_n` is Lagrange's polynomial that is one at the node `h_n` as rounded above and
+/// zero at the others. Each is the sum of two numbers.
+///
+/// A relative error `e` of such coefficients shifts the energy by about `e dt^2 <a^2>/2` in every step, the same way each time.
+/// For `e = 1e-16` and 250 steps to an orbit that is `1e-20` of the energy, and after `10^5` steps more than all roundings at random.
+pub(super) const END_WEIGHTS: [[[f64; 2]; 2]; ORDER] = [
+    [[0.092_679_077_401_489_69, -6.925_059_727_783_487e-19], [0.087_464_715_198_682_25, 1.256_981_490_181_266_6e-18]],
+    [[0.152_065_310_323_392_5, -8.888_714_727_577_061e-18], [0.124_656_953_601_519_06, -3.261_047_841_243_006e-18]],
+    [[0.188_258_772_694_559_37, 7.391_856_311_445_767e-18], [0.121_874_076_229_067_85, -1.456_820_591_472_273e-18]],
+    [[0.195_786_083_726_246_73, -6.629_769_515_866_781e-18], [0.088_661_018_030_373_11, -2.849_144_709_811_723e-19]],
+    [[0.173_507_397_817_250_66, -5.640_490_253_701_852e-18], [0.046_116_500_517_662_31, -1.753_368_000_879_679_7e-18]],
+    [[0.124_823_950_664_932_5, 2.438_802_808_274_561_3e-18], [0.014_314_692_474_057_89, -2.594_275_740_674_116_3e-22]],
+    [[0.057_254_407_372_128_585, 1.094_082_703_513_491e-18], [0.001_287_043_948_637_545, -1.824_978_039_945_946e-20]],
+];
+
 /// `BINOMIAL[n][k]`.
 pub(super) const BINOMIAL: [[f64; ORDER + 1]; ORDER + 1] = binomials();
 
@@ -105,6 +121,43 @@ mod tests {
         for k in 0..ORDER {
             let back: f64 = (k..ORDER).map(|j| b[j] * table.newton_from_power[j][k]).sum();
             assert!((back - g[k]).abs() < 50.0 * f64::EPSILON);
+        }
+    }
+
+    /// Sums of `w h^k` must be `1/(k + 1)` and `1/((k + 1)(k + 2))` far beyond the digits of one number: products and sums here
+    /// keep what rounding takes (Dekker 1971, doi:10.1007/BF01397083).
+    #[test]
+    fn end_weights_integrate_powers_to_twice_the_precision() {
+        type Double = (f64, f64);
+        fn sum(a: f64, b: f64) -> Double {
+            let s = a + b;
+            let taken = s - a;
+            (s, (a - (s - taken)) + (b - taken))
+        }
+        fn add(a: Double, b: Double) -> Double {
+            let (s, lost) = sum(a.0, b.0);
+            sum(s, lost + a.1 + b.1)
+        }
+        fn multiply(a: Double, b: f64) -> Double {
+            let split = |x: f64| {
+                let c = 134_217_729.0 * x;
+                let high = c - (c - x);
+                (high, x - high)
+            };
+            let (product, (ah, al), (bh, bl)) = (a.0 * b, split(a.0), split(b));
+            sum(product, ((ah * bh - product) + ah * bl + al * bh) + al * bl + a.1 * b)
+        }
+        for power in 1..=7u32 {
+            let k = f64::from(power);
+            for (of, denominator) in [(0, k + 1.0), (1, (k + 1.0) * (k + 2.0))] {
+                let mut total = (0.0, 0.0);
+                for (n, weights) in END_WEIGHTS.iter().enumerate() {
+                    let term = (0..power).fold((weights[of][0], weights[of][1]), |term, _| multiply(term, NODES[n + 1]));
+                    total = add(total, term);
+                }
+                let (one, rest) = multiply(total, denominator);
+                assert!(((one - 1.0) + rest).abs() < 1e-31, "{power}: {:e}", (one - 1.0) + rest);
+            }
         }
     }
 
