@@ -30,7 +30,6 @@ mod engine;
 mod exact;
 pub mod force;
 mod image;
-mod instructions;
 mod integrator;
 mod motion;
 mod neighbours;

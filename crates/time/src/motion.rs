@@ -1,6 +1,6 @@
 //! Kicks and drifts of whole arrays.
 
-use crate::instructions::Kernel;
+use corpuscle_core::instructions::Kernel;
 
 /// Numbers handled together.
 const LANES: usize = 8;

@@ -3,6 +3,7 @@
 mod blocks;
 mod rows;
 
+use corpuscle_core::instructions::{Instructions, Kernel};
 use corpuscle_core::{Axis, Boundary, Vector};
 use rayon::prelude::*;
 
@@ -11,7 +12,6 @@ use rows::{Map, Search};
 pub(crate) use rows::{Rows, Share};
 
 use crate::image::NearestImage;
-use crate::instructions::{Instructions, Kernel};
 
 /// Blocks below which a share of the work is not worth a thread.
 const SMALLEST_SHARE: usize = 128;

@@ -1,10 +1,9 @@
 //! What an integrator moves: particles in a boundary under forces, with the few operations integrators are made of.
 
-use corpuscle_core::{Axis, Boundary, Contact, Failure, Invalid, Meeting, Particles, Party, Vector};
+use corpuscle_core::{Axis, Boundary, Contact, Failure, Instructions, Invalid, Meeting, Particles, Party, Vector};
 
 use crate::constraint::Held;
 use crate::force::Force;
-use crate::instructions::Instructions;
 use crate::motion::{Kick, KickAndDrift};
 
 /// State and forces. Scratch arrays live beside what uses them.

@@ -1,12 +1,11 @@
 //! Springs between pairs of particles: chains, membranes, arbitrary networks.
 
-use corpuscle_core::{Axis, Boundary, Invalid, Particles, Vector};
+use corpuscle_core::{Axis, Boundary, Instructions, Invalid, Particles, Vector};
 
 mod run;
 
 use super::{Force, finite, massive, not_negative};
 use crate::image::NearestImage;
-use crate::instructions::Instructions;
 use run::{Run, Stretch};
 
 /// A spring, with a dashpot beside it.

@@ -1,10 +1,10 @@
 //! Which blocks come near which particle.
 
+use corpuscle_core::instructions::Kernel;
 use corpuscle_core::{Axis, Boundary};
 
 use super::blocks::{Blocks, LANES, Lanes, NOBODY};
 use crate::image::NearestImage;
-use crate::instructions::Kernel;
 
 /// Rows of blocks: one row a place, for some of the places.
 #[derive(Clone, Debug, Default)]

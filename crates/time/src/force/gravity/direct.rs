@@ -1,11 +1,11 @@
 //! Every pair of masses once, in blocks that meet as the teams of a tournament.
 
+use corpuscle_core::instructions::{Instructions, Kernel};
 use corpuscle_core::{Particles, Vector};
 use rayon::prelude::*;
 
 use super::lanes::{LANES, guess, inverse_cube_of_root, sum};
 use super::scale::Scale;
-use crate::instructions::{Instructions, Kernel};
 
 /// Masses in a block, at most: what is needed of one block fits the first-level cache.
 pub(super) const BLOCK: usize = 256;

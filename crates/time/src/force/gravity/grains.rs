@@ -1,11 +1,11 @@
 //! The pull of masses on massless grains.
 
+use corpuscle_core::instructions::{Instructions, Kernel};
 use corpuscle_core::{Particles, Vector};
 use rayon::prelude::*;
 
 use super::lanes::{guess, inverse_cube_of_root};
 use super::scale::Scale;
-use crate::instructions::{Instructions, Kernel};
 
 /// Grains handled by one thread at a time.
 const BLOCK: usize = 256;

@@ -3,9 +3,10 @@
 // A condition without `&&` is a mask; what a kernel accumulates stays apart so that it stays in registers.
 #![allow(clippy::needless_bitwise_bool, clippy::too_many_arguments)]
 
+use corpuscle_core::instructions::Kernel;
+
 use crate::exact::{BITS, Quantum};
 use crate::image::NearestImage;
-use crate::instructions::Kernel;
 use crate::neighbours::{Blocks, LANES, Lanes, Rows, Share};
 
 use super::PairPotential;

@@ -1,9 +1,9 @@
 //! Springs alike between neighbours in memory.
 
 use corpuscle_core::Vector;
+use corpuscle_core::instructions::Kernel;
 
 use super::Spring;
-use crate::instructions::Kernel;
 
 /// First ends within one block of so many particles are handled together: what is written stays in the cache meanwhile.
 const NEAR: usize = 2048;
