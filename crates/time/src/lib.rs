@@ -31,6 +31,7 @@ mod exact;
 pub mod force;
 mod image;
 mod integrator;
+mod lanes;
 mod motion;
 mod neighbours;
 mod system;

@@ -6,10 +6,11 @@ use corpuscle_core::{Axis, Boundary, Instructions, Invalid, Particles, Vector};
 use rayon::prelude::*;
 
 use super::{Force, massive, positive};
-use crate::exact::{BITS, Quantum};
+use crate::exact::Quantum;
 use crate::image::NearestImage;
-use crate::neighbours::{Blocks, LANES, Neighbours, Share};
-use kernel::{AddEnergies, AddForces, Forces, Law, NONE, Pairs, Sums, Table, Uniform};
+use crate::lanes;
+use crate::neighbours::{Blocks, Neighbours, Rows};
+use kernel::{AddEnergies, AddForces, Law, Pairs, Table, Totals, Uniform};
 
 /// How far typical pairs are below the bound of the sums' quantum: forces up to `2^14` times energy over length and energies
 /// up to `2^14` times the energy are still summed with the finest one.
@@ -62,8 +63,8 @@ pub struct PairForce<P, const D: usize> {
     shifted: bool,
     neighbours: Neighbours<D>,
     instructions: Instructions,
-    /// One array a share of the list.
-    force: Vec<Vec<Forces<D, 1>>>,
+    /// Of each place in the list's order.
+    force: Vec<[f64; D]>,
     quantum: Quantum,
 }
 
@@ -110,60 +111,53 @@ impl<P: PairPotential, const D: usize> PairForce<P, D> {
         &self.neighbours
     }
 
-    /// Adds the accelerations by the forces of all pairs, which `force` gathers.
+    /// Adds the accelerations by the forces of all pairs.
     fn add_accelerations<const LEVELS: usize>(
         &mut self,
         boundary: &Boundary<D>,
         particles: &Particles<D>,
-        force: &mut Vec<Vec<Forces<D, LEVELS>>>,
         acceleration: &mut [Vector<D>],
     ) {
         self.neighbours.update(boundary, &particles.position);
+        let mut force = std::mem::take(&mut self.force);
+        force.resize(self.neighbours.blocks.position.len(), [0.0; D]);
         let bound = if let [potential] = self.table[..] {
-            self.add_forces(Uniform(potential), boundary, force)
+            self.find_forces::<_, LEVELS>(Uniform(potential), boundary, &mut force)
         } else {
             self.neighbours.blocks.load_species(&particles.species);
             let (table, species) = (self.table.clone(), self.species);
-            self.add_forces(Table(&table, species), boundary, force)
+            self.find_forces::<_, LEVELS>(Table(&table, species), boundary, &mut force)
         };
-        if !bound.is_finite() {
+        if bound.is_finite() {
+            let place = &self.neighbours.blocks.place;
+            for ((a, &mass), &place) in acceleration.iter_mut().zip(&particles.mass).zip(place) {
+                *a += Vector(force[place as usize]) * (1.0 / mass);
+            }
+        } else {
             for i in self.lost(boundary, particles) {
                 acceleration[i] = Vector([f64::NAN; D]);
             }
-            return;
         }
-        let unit = if LEVELS == 1 { self.quantum.unit() } else { self.quantum.finer().unit() };
-        let place = &self.neighbours.blocks.place;
-        for ((a, &mass), &place) in acceleration.iter_mut().zip(&particles.mass).zip(place) {
-            let (block, lane) = (place as usize / LANES, place as usize % LANES);
-            let scale = unit / mass;
-            for k in 0..D {
-                let sum = |level: usize| force.iter().fold(0i64, |sum, force| sum.wrapping_add(force[block][level][k][lane]));
-                a[k] +=
-                    scale * if LEVELS == 1 { sum(0) as f64 } else { ((i128::from(sum(0)) << BITS) + i128::from(sum(1))) as f64 };
-            }
-        }
+        self.force = force;
     }
 
-    /// Sums the forces of all pairs, with the quantum that suits the largest of them; returns the bound of all forces.
-    fn add_forces<L: Law, const LEVELS: usize>(
-        &mut self,
-        law: L,
-        boundary: &Boundary<D>,
-        force: &mut Vec<Vec<Forces<D, LEVELS>>>,
-    ) -> f64 {
+    /// Sums the forces on every place, with the quantum that suits the largest of them; returns the bound of all forces.
+    fn find_forces<L: Law, const LEVELS: usize>(&mut self, law: L, boundary: &Boundary<D>, force: &mut [[f64; D]]) -> f64 {
         let cutoff = largest(&self.table, P::cutoff);
         let finest = finest(&self.table, |potential| potential.depth() / potential.length());
         let (blocks, shares) = (&self.neighbours.blocks, &self.neighbours.shares);
-        force.resize_with(shares.len(), Vec::new);
+        let places = self.neighbours.places_a_share();
         loop {
-            let one = |(force, share): (&mut Vec<Forces<D, LEVELS>>, &Share)| {
-                force.clear();
-                force.resize(blocks.position.len(), [[NONE; D]; LEVELS]);
-                let pairs = self.pairs(law, boundary, blocks, share);
-                self.instructions.run(AddForces { pairs, quanta: [self.quantum, self.quantum.finer()], force })
+            let quanta = [self.quantum, self.quantum.finer()];
+            let one = |(force, rows): (&mut [[f64; D]], &Rows)| {
+                let pairs = Self::pairs(law, boundary, blocks, rows);
+                lanes::run(self.instructions, AddForces::<L, D, LEVELS> { pairs, quanta, force })
             };
-            let scale = force.par_iter_mut().zip(shares).map(one).reduce(|| 0.0, larger);
+            let scale = if shares.len() == 1 {
+                one((force, &shares[0]))
+            } else {
+                force.par_chunks_mut(places).zip(shares).map(one).reduce(|| 0.0, larger)
+            };
             // The last quantum is only a guess, which saves time where it is right: the bits follow from the largest force.
             let quantum = finest.coarsened(scale * cutoff);
             if quantum == self.quantum {
@@ -173,8 +167,8 @@ impl<P: PairPotential, const D: usize> PairForce<P, D> {
         }
     }
 
-    fn pairs<'a, L>(&self, law: L, boundary: &Boundary<D>, blocks: &'a Blocks<D>, share: &'a Share) -> Pairs<'a, L, D> {
-        Pairs { law, image: NearestImage::new(boundary), blocks, share, shifted: self.shifted }
+    fn pairs<'a, L>(law: L, boundary: &Boundary<D>, blocks: &'a Blocks<D>, rows: &'a Rows) -> Pairs<'a, L, D> {
+        Pairs { law, image: NearestImage::new(boundary), blocks, rows }
     }
 
     /// Energy and virial.
@@ -188,26 +182,28 @@ impl<P: PairPotential, const D: usize> PairForce<P, D> {
         };
         blocks.load_species(&particles.species);
         let finest = finest(&self.table, P::depth);
+        let (instructions, shifted) = (self.instructions, self.shifted);
         let mut quanta = [finest; 2];
         loop {
-            let one = |share| -> Sums {
+            let one = |rows| -> Totals {
                 let quanta = quanta.map(|quantum| [quantum, quantum.finer()]);
                 if let [potential] = self.table[..] {
-                    let pairs = self.pairs(Uniform(potential), boundary, &blocks, share);
-                    self.instructions.run(AddEnergies { pairs, quanta })
+                    let pairs = Self::pairs(Uniform(potential), boundary, &blocks, rows);
+                    lanes::run(instructions, AddEnergies { pairs, quanta, shifted })
                 } else {
-                    let pairs = self.pairs(Table(&self.table, self.species), boundary, &blocks, share);
-                    self.instructions.run(AddEnergies { pairs, quanta })
+                    let pairs = Self::pairs(Table(&self.table, self.species), boundary, &blocks, rows);
+                    lanes::run(instructions, AddEnergies { pairs, quanta, shifted })
                 }
             };
-            let parts: Vec<Sums> = shares.par_iter().map(one).collect();
+            let parts: Vec<Totals> = shares.par_iter().map(one).collect();
             let bounds = [0, 1].map(|number| parts.iter().map(|part| part.largest[number]).fold(0.0, larger));
             if !bounds.iter().all(|bound| bound.is_finite()) {
                 return bounds;
             }
             let needed = bounds.map(|bound| finest.coarsened(bound));
             if needed == quanta {
-                let sum = |number: usize| parts.iter().map(|part| part.total[number]).sum::<i128>() as f64;
+                // Both sides of a pair have the same energy, bit by bit: half of the sum is a whole number of quanta.
+                let sum = |number: usize| (parts.iter().map(|part| part.total[number]).sum::<i128>() / 2) as f64;
                 return [0, 1].map(|number| sum(number) * quanta[number].finer().unit());
             }
             quanta = needed;
@@ -249,9 +245,7 @@ impl<P: PairPotential, const D: usize> Force<D> for PairForce<P, D> {
     }
 
     fn accelerate(&mut self, _: f64, boundary: &Boundary<D>, particles: &Particles<D>, acceleration: &mut [Vector<D>]) {
-        let mut force = std::mem::take(&mut self.force);
-        self.add_accelerations(boundary, particles, &mut force, acceleration);
-        self.force = force;
+        self.add_accelerations::<1>(boundary, particles, acceleration);
     }
 
     fn accelerate_precisely(
@@ -262,7 +256,7 @@ impl<P: PairPotential, const D: usize> Force<D> for PairForce<P, D> {
         _: &[Vector<D>],
         acceleration: &mut [Vector<D>],
     ) {
-        self.add_accelerations::<2>(boundary, particles, &mut vec![], acceleration);
+        self.add_accelerations::<2>(boundary, particles, acceleration);
     }
 
     fn energy(&self, _: f64, boundary: &Boundary<D>, particles: &Particles<D>) -> f64 {

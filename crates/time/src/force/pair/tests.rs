@@ -84,7 +84,7 @@ fn bits_depend_neither_on_the_instruction_set_nor_on_the_number_of_threads() {
             let mut force = PairForce::<_, 3>::new(LennardJones { epsilon: 1.0, sigma: 1.0, cutoff: 2.5 });
             force.instructions = instructions;
             let accelerations = accelerations(&mut force, &boundary, &particles);
-            assert_eq!(force.force.len(), threads);
+            assert!(force.neighbours.shares.len() >= threads);
             (accelerations, force.energy(0.0, &boundary, &particles), force.virial(0.0, &boundary, &particles))
         })
     };
