@@ -40,10 +40,10 @@ impl Quantum {
         self.magic
     }
 
-    /// The sum of the multiples of so many terms, from the sum, which wraps around, of the bits of those sums.
+    /// What the sum, which wraps around, of the bits of so many of those sums is larger by than the sum of their multiples.
     #[inline(always)]
-    pub(crate) fn multiples(self, bits: i64, terms: i64) -> i64 {
-        bits.wrapping_sub(terms.wrapping_mul(self.magic.to_bits() as i64))
+    pub(crate) fn bias(self, terms: i64) -> i64 {
+        terms.wrapping_mul(self.magic.to_bits() as i64)
     }
 
     /// The quantum for what terms leave: `2^-51` of this one.
@@ -75,7 +75,7 @@ mod tests {
         let mut terms: Vec<f64> = (0..1000).map(|_| 300.0 * random.normal().clamp(-3.0, 3.0)).collect();
         let sum = |terms: &[f64]| {
             let bits = terms.iter().fold(0i64, |sum, &x| sum.wrapping_add((x + quantum.magic()).to_bits() as i64));
-            quantum.multiples(bits, terms.len() as i64)
+            bits.wrapping_sub(quantum.bias(terms.len() as i64))
         };
         let forwards = sum(&terms);
         let plain: f64 = terms.iter().sum();
@@ -100,7 +100,7 @@ mod tests {
         assert_eq!(fine.coarsened(1025.0).coarsened(1.0), fine.coarsened(1025.0));
         for x in [1e-300, 3.0, 1023.9, -777.0] {
             let shifted = x + fine.magic();
-            let (multiple, left) = (fine.multiples(shifted.to_bits() as i64, 1), x - (shifted - fine.magic()));
+            let (multiple, left) = ((shifted.to_bits() as i64).wrapping_sub(fine.bias(1)), x - (shifted - fine.magic()));
             assert_eq!(multiple as f64 * fine.unit() + left, x);
             assert!(left.abs() <= 0.5 * fine.unit());
         }

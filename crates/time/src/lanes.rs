@@ -35,6 +35,8 @@ pub(crate) trait Lanes: Copy {
     fn zeros() -> Self::Integers;
     /// What the integers are.
     fn integers(integers: Self::Integers) -> [i64; LANES];
+    /// The nearest numbers to integers less `bias`, which wrap around.
+    fn numbers(integers: Self::Integers, bias: i64) -> Self;
     /// Adds the bits of the numbers to integers, which wrap around.
     fn add_bits(self, sum: Self::Integers) -> Self::Integers;
     /// The larger of the magnitudes' bits and `most`. Infinity is larger than all numbers, no number larger still.
@@ -129,6 +131,10 @@ impl Lanes for Array {
         integers
     }
     #[inline(always)]
+    fn numbers(integers: [i64; LANES], bias: i64) -> Self {
+        Self(std::array::from_fn(|l| integers[l].wrapping_sub(bias) as f64))
+    }
+    #[inline(always)]
     fn add_bits(self, sum: [i64; LANES]) -> [i64; LANES] {
         std::array::from_fn(|l| sum[l].wrapping_add(self.0[l].to_bits() as i64))
     }
@@ -144,10 +150,10 @@ use x86::WithAvx2;
 #[cfg(target_arch = "x86_64")]
 mod x86 {
     use std::arch::x86_64::{
-        __m256d, __m256i, _CMP_LT_OQ, _mm256_add_epi64, _mm256_add_pd, _mm256_and_pd, _mm256_andnot_pd, _mm256_blendv_pd,
-        _mm256_castpd_si256, _mm256_castsi256_pd, _mm256_cmp_pd, _mm256_cmpgt_epi64, _mm256_loadu_pd, _mm256_max_pd, _mm256_min_pd,
-        _mm256_movemask_pd, _mm256_mul_pd, _mm256_permute4x64_pd, _mm256_set1_pd, _mm256_setzero_si256, _mm256_storeu_pd,
-        _mm256_storeu_si256, _mm256_sub_pd,
+        __m256d, __m256i, _CMP_LT_OQ, _mm256_add_epi64, _mm256_add_pd, _mm256_and_pd, _mm256_andnot_pd, _mm256_blend_epi16,
+        _mm256_blendv_pd, _mm256_castpd_si256, _mm256_castsi256_pd, _mm256_cmp_pd, _mm256_cmpgt_epi64, _mm256_loadu_pd,
+        _mm256_max_pd, _mm256_min_pd, _mm256_movemask_pd, _mm256_mul_pd, _mm256_permute4x64_pd, _mm256_set1_epi64x, _mm256_set1_pd,
+        _mm256_setzero_si256, _mm256_srai_epi32, _mm256_storeu_pd, _mm256_storeu_si256, _mm256_sub_epi64, _mm256_sub_pd,
     };
 
     use corpuscle_core::instructions::Kernel;
@@ -252,6 +258,22 @@ mod x86 {
             lanes
         }
         #[inline(always)]
+        fn numbers(integers: __m256i, bias: i64) -> Self {
+            // The upper half, signed, in the last bits of 3 * 2^67, whose last bit is worth 2^32 * 2^-16 and holds the half
+            // shifted up by 16; the lower 48 bits in those of 2^52. Less what was added, their sum is rounded once.
+            const UPPER: f64 = 3.0 * (1u128 << 67) as f64;
+            const LOWER: f64 = (1u64 << 52) as f64;
+            // SAFETY: see the type.
+            unsafe {
+                let x = _mm256_sub_epi64(integers, _mm256_set1_epi64x(bias));
+                let upper = _mm256_blend_epi16::<0b0011_0011>(_mm256_srai_epi32::<16>(x), _mm256_setzero_si256());
+                let upper = _mm256_add_epi64(upper, _mm256_castpd_si256(_mm256_set1_pd(UPPER)));
+                let lower = _mm256_blend_epi16::<0b1000_1000>(x, _mm256_castpd_si256(_mm256_set1_pd(LOWER)));
+                let upper = _mm256_sub_pd(_mm256_castsi256_pd(upper), _mm256_set1_pd(UPPER + LOWER));
+                Self(_mm256_add_pd(upper, _mm256_castsi256_pd(lower)))
+            }
+        }
+        #[inline(always)]
         fn add_bits(self, sum: __m256i) -> __m256i {
             // SAFETY: see the type.
             unsafe { _mm256_add_epi64(sum, _mm256_castpd_si256(self.0)) }
@@ -298,6 +320,34 @@ mod tests {
                 bits.push(a.any_less(b).into());
             }
             bits
+        }
+    }
+
+    /// Integers as numbers.
+    struct Conversion([i64; LANES], i64);
+
+    impl InLanes for Conversion {
+        type Output = [f64; LANES];
+
+        #[inline(always)]
+        fn run<V: Lanes>(self) -> [f64; LANES] {
+            let none = V::integers(V::zeros());
+            let bits = V::new(self.0.map(|x| f64::from_bits(x as u64))).add_bits(V::zeros());
+            assert_eq!(none, [0; LANES]);
+            V::numbers(bits, self.1).lanes()
+        }
+    }
+
+    #[test]
+    fn integers_become_the_nearest_numbers() {
+        let mut random = corpuscle_core::Random::new(5, 0);
+        for n in 0..20_000 {
+            let mut word = || ((random.uniform() * 2f64.powi(52)) as i64).wrapping_mul(0x9E37_79B9_7F4A_7C15u64 as i64) >> (n % 63);
+            let (integers, bias) = ([word(), word(), -word(), i64::MAX - word()], word());
+            let expected = integers.map(|x| x.wrapping_sub(bias) as f64);
+            for instructions in Instructions::all() {
+                assert_eq!(run(instructions, Conversion(integers, bias)), expected, "{integers:?} {bias}");
+            }
         }
     }
 

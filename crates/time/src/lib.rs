@@ -35,6 +35,7 @@ mod lanes;
 mod motion;
 mod neighbours;
 mod system;
+mod threads;
 
 pub use constraint::{Drive, Pin, Signal};
 pub use engine::TimeDriven;

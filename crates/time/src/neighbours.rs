@@ -8,8 +8,8 @@ use rayon::prelude::*;
 
 use crate::image::NearestImage;
 use crate::lanes::{self, LANES};
-use blocks::LargestMoves;
 pub(crate) use blocks::{Blocks, column, norm_squared};
+use blocks::{LargestMoves, take_over};
 pub(crate) use rows::{ALL, Image, NONE, Near, Rows};
 use rows::{Map, Prune, Search, rounded_up};
 
@@ -20,7 +20,7 @@ const SHARES_A_THREAD: usize = 4;
 /// What pruning a list costs, in evaluations of the force from it.
 const PRUNE_COST: f64 = 1.0;
 /// What sorting and searching costs, in evaluations of the force.
-const BUILD_COST: f64 = 8.0;
+const BUILD_COST: f64 = 4.0;
 
 /// The pairs of particles within cutoff plus skin (Verlet 1967, doi:10.1103/PhysRev.159.98), from blocks of four particles next
 /// to each other in space to the others near any of the four.
@@ -94,8 +94,7 @@ impl<const D: usize> Neighbours<D> {
     pub fn update(&mut self, boundary: &Boundary<D>, position: &[Vector<D>]) {
         self.uses += 1;
         if self.fits(boundary, position) {
-            self.blocks.load(position);
-            if self.moved(boundary, &self.pruned_at, &self.blocks) < self.skin {
+            if self.load(boundary, position) < self.skin {
                 return;
             }
             let moved = self.moved(boundary, &self.built_at, &self.blocks);
@@ -127,10 +126,27 @@ impl<const D: usize> Neighbours<D> {
         self.built_in == Some((boundary.axes, boundary.lower, boundary.upper)) && self.blocks.place.len() == position.len()
     }
 
+    /// Takes over the positions; tells by how much two particles can have come nearer to each other since the list was made.
+    fn load(&mut self, boundary: &Boundary<D>, position: &[Vector<D>]) -> f64 {
+        let (instructions, image, places) = (self.instructions, NearestImage::new(boundary), self.places_a_share());
+        let one = |((now, before), particle): ((&mut [[f64; D]], &[[f64; D]]), &[u32])| {
+            take_over(now, particle, position);
+            lanes::run(instructions, LargestMoves { image, before, now })
+        };
+        let (now, before, particle) = (&mut self.blocks.position, &self.pruned_at, &self.blocks.particle);
+        let largest = if self.shares.len() == 1 {
+            one(((now, before), particle))
+        } else {
+            let shares = now.par_chunks_mut(places).zip(before.par_chunks(places)).zip(particle.par_chunks(places));
+            shares.map(one).reduce(|| [0.0; 2], two_largest)
+        };
+        closer_by(largest)
+    }
+
     /// By how much two particles can have come nearer to each other since they were `before`.
     fn moved(&self, boundary: &Boundary<D>, before: &[[f64; D]], blocks: &Blocks<D>) -> f64 {
         let moves = LargestMoves { image: NearestImage::new(boundary), before, now: &blocks.position };
-        lanes::run(self.instructions, moves).map(f64::sqrt).iter().sum()
+        closer_by(lanes::run(self.instructions, moves))
     }
 
     /// The skin `s` of least cost. A force evaluation costs in proportion to the volume within reach, `(r + s)^D`, where `r`
@@ -196,4 +212,14 @@ impl<const D: usize> Neighbours<D> {
         }
         self.pruned_at.clone_from(&self.blocks.position);
     }
+}
+
+/// The two largest of two pairs, each the larger first.
+fn two_largest([a, b]: [f64; 2], [c, d]: [f64; 2]) -> [f64; 2] {
+    if a > c { [a, b.max(c)] } else { [c, a.max(d)] }
+}
+
+/// By how much two particles come nearer to each other that move by the roots of these squares.
+fn closer_by(squares: [f64; 2]) -> f64 {
+    squares[0].sqrt() + squares[1].sqrt()
 }

@@ -10,6 +10,7 @@ use crate::exact::Quantum;
 use crate::image::NearestImage;
 use crate::lanes;
 use crate::neighbours::{Blocks, Neighbours, Rows};
+use crate::threads::{self, CHUNK};
 use kernel::{AddEnergies, AddForces, Law, Pairs, Table, Totals, Uniform};
 
 /// How far typical pairs are below the bound of the sums' quantum: forces up to `2^14` times energy over length and energies
@@ -129,9 +130,17 @@ impl<P: PairPotential, const D: usize> PairForce<P, D> {
             self.find_forces::<_, LEVELS>(Table(&table, species), boundary, &mut force)
         };
         if bound.is_finite() {
-            let place = &self.neighbours.blocks.place;
-            for ((a, &mass), &place) in acceleration.iter_mut().zip(&particles.mass).zip(place) {
-                *a += Vector(force[place as usize]) * (1.0 / mass);
+            let (mass, place) = (&particles.mass, &self.neighbours.blocks.place);
+            let one = |((acceleration, mass), place): ((&mut [Vector<D>], &[f64]), &[u32])| {
+                for ((a, &mass), &place) in acceleration.iter_mut().zip(mass).zip(place) {
+                    *a += Vector(force[place as usize]) * (1.0 / mass);
+                }
+            };
+            if threads::are_worth_it(mass.len()) {
+                let chunks = acceleration.par_chunks_mut(CHUNK).zip(mass.par_chunks(CHUNK)).zip(place.par_chunks(CHUNK));
+                chunks.for_each(one);
+            } else {
+                one(((acceleration, mass), place));
             }
         } else {
             for i in self.lost(boundary, particles) {

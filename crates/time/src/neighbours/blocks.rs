@@ -169,11 +169,7 @@ impl<const D: usize> Blocks<D> {
 
     /// Takes over positions, in the present order.
     pub(crate) fn load(&mut self, position: &[Vector<D>]) {
-        for (here, &i) in self.position.iter_mut().zip(&self.particle) {
-            if let Some(r) = position.get(i as usize) {
-                *here = r.0;
-            }
-        }
+        take_over(&mut self.position, &self.particle, position);
     }
 
     /// Takes over species.
@@ -191,6 +187,15 @@ impl<const D: usize> Blocks<D> {
         // Places without a particle hold no number, which is neither smaller nor larger than one.
         let bound = |k: usize, start: f64, choose: fn(f64, f64) -> f64| places.iter().map(|r| r[k]).fold(start, choose);
         (std::array::from_fn(|k| bound(k, f64::INFINITY, f64::min)), std::array::from_fn(|k| bound(k, f64::NEG_INFINITY, f64::max)))
+    }
+}
+
+/// Positions at places, from those of the particles there.
+pub(crate) fn take_over<const D: usize>(places: &mut [[f64; D]], particle: &[u32], position: &[Vector<D>]) {
+    for (here, &i) in places.iter_mut().zip(particle) {
+        if let Some(r) = position.get(i as usize) {
+            *here = r.0;
+        }
     }
 }
 

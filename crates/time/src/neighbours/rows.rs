@@ -329,13 +329,14 @@ impl<const D: usize> InLanes for Search<'_, D> {
         rows.clear(range.start);
         let mut seen = vec![u32::MAX; if map.small { map.boxes.len() } else { 0 }];
         let mut candidates = vec![vec![]; D + 2];
+        let mut guesses = columns.starts.clone();
         for block in range {
             let bounds = &map.boxes[block];
             columns.for_each_near(&bounds.0, &bounds.1, map.reach, |other, room| {
                 let all = columns.starts[other] as usize..columns.starts[other + 1] as usize;
                 let (low, high) = (bounds.0[D - 1] - room.sqrt(), bounds.1[D - 1] + room.sqrt());
-                let mut visit = |low: f64, high: f64| {
-                    for candidate in overlap(&map.boxes, all.clone(), low, high) {
+                let mut visit = |low: f64, high: f64, guess: &mut u32| {
+                    for candidate in overlap(&map.boxes, all.clone(), low, high, guess) {
                         if candidate == block {
                             continue;
                         }
@@ -349,13 +350,13 @@ impl<const D: usize> InLanes for Search<'_, D> {
                         candidates[image.number::<D>()].push(candidate as u32);
                     }
                 };
-                visit(low, high);
+                visit(low, high, &mut guesses[other]);
                 if let Some((lower, upper)) = map.ring {
                     if low < lower {
-                        visit(low + (upper - lower), high + (upper - lower));
+                        visit(low + (upper - lower), high + (upper - lower), &mut { columns.starts[other + 1] });
                     }
                     if high >= upper {
-                        visit(low - (upper - lower), high - (upper - lower));
+                        visit(low - (upper - lower), high - (upper - lower), &mut { columns.starts[other] });
                     }
                 }
             });
@@ -370,16 +371,24 @@ impl<const D: usize> InLanes for Search<'_, D> {
     }
 }
 
-/// The blocks of `range`, which lie in order along a column, that overlap `low..high`.
+/// The blocks of `range`, which lie in order along a column, that overlap `low..high`. The first is looked for from `guess` on,
+/// where it then is: for one block after another along a column it is never far.
 #[inline(always)]
 fn overlap<const D: usize>(
     boxes: &[([f64; D], [f64; D])],
     range: std::ops::Range<usize>,
     low: f64,
     high: f64,
+    guess: &mut u32,
 ) -> std::ops::Range<usize> {
-    let column = &boxes[range.clone()];
-    let start = column.partition_point(|(_, upper)| upper[D - 1] < low);
-    let count = column[start..].iter().take_while(|(lower, _)| lower[D - 1] <= high).count();
-    range.start + start..range.start + start + count
+    let mut start = (*guess as usize).clamp(range.start, range.end);
+    while start > range.start && boxes[start - 1].1[D - 1] >= low {
+        start -= 1;
+    }
+    while start < range.end && boxes[start].1[D - 1] < low {
+        start += 1;
+    }
+    *guess = start as u32;
+    let count = boxes[start..range.end].iter().take_while(|(lower, _)| lower[D - 1] <= high).count();
+    start..start + count
 }

@@ -10,6 +10,8 @@ use super::PairPotential;
 /// Which potential acts between two species.
 pub(super) trait Law: Copy + Sync {
     type Potential: PairPotential;
+    /// Whether species do not matter.
+    const UNIFORM: bool;
 
     fn between(self, species: u16, other: u16) -> Self::Potential;
 }
@@ -20,6 +22,7 @@ pub(super) struct Uniform<P>(pub(super) P);
 
 impl<P: PairPotential> Law for Uniform<P> {
     type Potential = P;
+    const UNIFORM: bool = true;
 
     #[inline(always)]
     fn between(self, _: u16, _: u16) -> P {
@@ -33,6 +36,7 @@ pub(super) struct Table<'a, P>(pub(super) &'a [P], pub(super) usize);
 
 impl<P: PairPotential> Law for Table<'_, P> {
     type Potential = P;
+    const UNIFORM: bool = false;
 
     #[inline(always)]
     fn between(self, species: u16, other: u16) -> P {
@@ -48,44 +52,72 @@ pub(super) struct Pairs<'a, L, const D: usize> {
     pub(super) rows: &'a Rows,
 }
 
-/// Four pairs of particles.
-struct Four<V, P, const D: usize> {
-    /// From the other particle of a pair to the block's own.
-    arrow: [V; D],
-    r_squared: V,
-    potential: [P; LANES],
+/// How many particles a block meets at once: a processor looks only so far ahead, and so it has something to do while it waits
+/// for a quotient.
+const TOGETHER: usize = 4;
+
+/// The particles of a block, each against `N` others.
+struct Meeting<V, L, const D: usize, const N: usize> {
+    law: L,
+    own: [u16; LANES],
+    other: [[u16; LANES]; N],
+    /// From the others to the block's own.
+    arrow: [[V; D]; N],
+    r_squared: [V; N],
 }
 
-impl<V: Lanes, P: PairPotential, const D: usize> Four<V, P, D> {
-    /// `U'(r)/r` with the sign of a repulsion, zero beyond the range.
+impl<V: Lanes, L: Law, const D: usize, const N: usize> Meeting<V, L, D, N> {
     #[inline(always)]
-    fn force_over_distance(&self) -> V {
-        let squares = self.r_squared.lanes();
-        let (mut force, mut range) = ([0.0; LANES], [0.0; LANES]);
-        for lane in 0..LANES {
-            force[lane] = self.potential[lane].force_over_distance(squares[lane]);
-            range[lane] = self.potential[lane].cutoff() * self.potential[lane].cutoff();
+    fn new<const IMAGE: usize>(law: L, image: &NearestImages<V, D>, block: &Block<V, D>, there: &[[V; D]; N]) -> Self {
+        let mut meeting =
+            Self { law, own: block.species, other: [block.species; N], arrow: [block.r; N], r_squared: [block.r[0]; N] };
+        for n in 0..N {
+            for k in 0..D {
+                meeting.arrow[n][k] = block.r[k].sub(there[n][k]);
+                if IMAGE == ALL || IMAGE == k {
+                    meeting.arrow[n][k] = image.component(k, meeting.arrow[n][k]);
+                }
+            }
+            meeting.r_squared[n] = norm_squared(&meeting.arrow[n]);
         }
-        V::new(force).where_less(self.r_squared, V::new(range))
+        meeting
     }
 
-    /// `U(r)`, less its value at the range if `shifted`; zero beyond the range.
     #[inline(always)]
-    fn energy(&self, shifted: bool) -> V {
-        let squares = self.r_squared.lanes();
+    fn potential(&self, n: usize, lane: usize) -> L::Potential {
+        self.law.between(self.own[lane], self.other[n][lane])
+    }
+
+    /// `U'(r)/r` of four pairs, with the sign of a repulsion; zero beyond the range.
+    #[inline(always)]
+    fn force_over_distance(&self, n: usize) -> V {
+        let squares = self.r_squared[n].lanes();
+        let (mut force, mut range) = ([0.0; LANES], [0.0; LANES]);
+        for lane in 0..LANES {
+            let potential = self.potential(n, lane);
+            force[lane] = potential.force_over_distance(squares[lane]);
+            range[lane] = potential.cutoff() * potential.cutoff();
+        }
+        V::new(force).where_less(self.r_squared[n], V::new(range))
+    }
+
+    /// `U(r)` of four pairs, less its value at the range if `shifted`; zero beyond the range.
+    #[inline(always)]
+    fn energy(&self, n: usize, shifted: bool) -> V {
+        let squares = self.r_squared[n].lanes();
         let (mut energy, mut range) = ([0.0; LANES], [0.0; LANES]);
         for lane in 0..LANES {
-            let potential = self.potential[lane];
+            let potential = self.potential(n, lane);
             range[lane] = potential.cutoff() * potential.cutoff();
             energy[lane] = potential.energy(squares[lane]) - if shifted { potential.energy(range[lane]) } else { 0.0 };
         }
-        V::new(energy).where_less(self.r_squared, V::new(range))
+        V::new(energy).where_less(self.r_squared[n], V::new(range))
     }
 }
 
 /// A sum over the pairs of a block.
 trait Sum<V: Lanes, const D: usize> {
-    fn add<P: PairPotential>(&mut self, pairs: &Four<V, P, D>);
+    fn add<L: Law, const N: usize>(&mut self, meeting: &Meeting<V, L, D, N>);
 }
 
 /// The particles of a block.
@@ -106,7 +138,7 @@ impl<V: Lanes, const D: usize> Block<V, D> {
         Self { r, species: [kinds[0], kinds[1], kinds[2], kinds[3]] }
     }
 
-    /// The block against one particle at a time of those near it.
+    /// The block against particles near it.
     #[inline(always)]
     fn meet<L: Law, const IMAGE: usize>(
         &self,
@@ -115,63 +147,59 @@ impl<V: Lanes, const D: usize> Block<V, D> {
         places: &[u32],
         sum: &mut impl Sum<V, D>,
     ) {
-        for &place in places {
-            let position = &pairs.blocks.position[place as usize];
-            let mut there = [V::splat(0.0); D];
-            for k in 0..D {
-                there[k] = V::splat(position[k]);
-            }
-            let species = [pairs.blocks.species[place as usize]; LANES];
-            sum.add(&self.against::<L, IMAGE>(pairs.law, image, &there, species));
+        let (groups, rest) = places.as_chunks::<TOGETHER>();
+        for group in groups {
+            self.meet_group::<L, IMAGE, TOGETHER>(pairs, image, group, sum);
         }
+        for &place in rest {
+            self.meet_group::<L, IMAGE, 1>(pairs, image, &[place], sum);
+        }
+    }
+
+    #[inline(always)]
+    fn meet_group<L: Law, const IMAGE: usize, const N: usize>(
+        &self,
+        pairs: &Pairs<'_, L, D>,
+        image: &NearestImages<V, D>,
+        places: &[u32; N],
+        sum: &mut impl Sum<V, D>,
+    ) {
+        let mut there = [self.r; N];
+        for n in 0..N {
+            let position = &pairs.blocks.position[places[n] as usize];
+            for k in 0..D {
+                there[n][k] = V::splat(position[k]);
+            }
+        }
+        let mut meeting = Meeting::new::<IMAGE>(pairs.law, image, self, &there);
+        if !L::UNIFORM {
+            for n in 0..N {
+                meeting.other[n] = [pairs.blocks.species[places[n] as usize]; LANES];
+            }
+        }
+        sum.add(&meeting);
     }
 
     /// Its particles against each other: each against the next, the one after that, and so on, counted round.
     #[inline(always)]
     fn meet_own<L: Law, const IMAGE: usize>(&self, law: L, image: &NearestImages<V, D>, sum: &mut impl Sum<V, D>) {
-        sum.add(&self.against_rotated::<L, IMAGE, 1>(law, image));
-        sum.add(&self.against_rotated::<L, IMAGE, 2>(law, image));
-        sum.add(&self.against_rotated::<L, IMAGE, 3>(law, image));
-    }
-
-    #[inline(always)]
-    fn against_rotated<L: Law, const IMAGE: usize, const BY: usize>(
-        &self,
-        law: L,
-        image: &NearestImages<V, D>,
-    ) -> Four<V, L::Potential, D> {
-        let (mut there, mut species) = (self.r, self.species);
+        let mut there = [self.r; LANES - 1];
         for k in 0..D {
-            there[k] = self.r[k].rotated::<BY>();
+            there[0][k] = self.r[k].rotated::<1>();
+            there[1][k] = self.r[k].rotated::<2>();
+            there[2][k] = self.r[k].rotated::<3>();
         }
-        for lane in 0..LANES {
-            species[lane] = self.species[(lane + BY) % LANES];
-        }
-        let mut pairs = self.against::<L, IMAGE>(law, image, &there, species);
-        for k in 0..D {
-            // Where the block has no particle, the arrow would be no number, even times nothing.
-            pairs.arrow[k] = pairs.arrow[k].where_less(pairs.r_squared, V::splat(f64::INFINITY));
-        }
-        pairs
-    }
-
-    #[inline(always)]
-    fn against<L: Law, const IMAGE: usize>(
-        &self,
-        law: L,
-        image: &NearestImages<V, D>,
-        there: &[V; D],
-        species: [u16; LANES],
-    ) -> Four<V, L::Potential, D> {
-        let mut arrow = self.r;
-        for k in 0..D {
-            arrow[k] = self.r[k].sub(there[k]);
-            if IMAGE == ALL || IMAGE == k {
-                arrow[k] = image.component(k, arrow[k]);
+        let mut meeting = Meeting::new::<IMAGE>(law, image, self, &there);
+        for n in 0..LANES - 1 {
+            for lane in 0..LANES {
+                meeting.other[n][lane] = self.species[(lane + n + 1) % LANES];
+            }
+            for k in 0..D {
+                // Where the block has no particle, the arrow would be no number, even times nothing.
+                meeting.arrow[n][k] = meeting.arrow[n][k].where_less(meeting.r_squared[n], V::splat(f64::INFINITY));
             }
         }
-        let potential = |lane: usize| law.between(self.species[lane], species[lane]);
-        Four { arrow, r_squared: norm_squared(&arrow), potential: [potential(0), potential(1), potential(2), potential(3)] }
+        sum.add(&meeting);
     }
 }
 
@@ -222,15 +250,20 @@ struct Forces<V: Lanes, const D: usize, const LEVELS: usize> {
 
 impl<V: Lanes, const D: usize, const LEVELS: usize> Sum<V, D> for Forces<V, D, LEVELS> {
     #[inline(always)]
-    fn add<P: PairPotential>(&mut self, pairs: &Four<V, P, D>) {
-        let scale = pairs.force_over_distance();
-        self.most = scale.larger_bits(self.most);
-        for k in 0..D {
-            let mut left = pairs.arrow[k].mul(scale);
-            for level in 0..LEVELS {
-                let shifted = left.add(self.magic[level]);
-                self.bits[level][k] = shifted.add_bits(self.bits[level][k]);
-                left = left.sub(shifted.sub(self.magic[level]));
+    fn add<L: Law, const N: usize>(&mut self, meeting: &Meeting<V, L, D, N>) {
+        let mut scale = [V::splat(0.0); N];
+        for n in 0..N {
+            scale[n] = meeting.force_over_distance(n);
+        }
+        for n in 0..N {
+            self.most = scale[n].larger_bits(self.most);
+            for k in 0..D {
+                let mut left = meeting.arrow[n][k].mul(scale[n]);
+                for level in 0..LEVELS {
+                    let shifted = left.add(self.magic[level]);
+                    self.bits[level][k] = shifted.add_bits(self.bits[level][k]);
+                    left = left.sub(shifted.sub(self.magic[level]));
+                }
             }
         }
     }
@@ -253,16 +286,17 @@ impl<L: Law, const D: usize, const LEVELS: usize> InLanes for AddForces<'_, L, D
             most = sum.most;
             let terms = terms(&near);
             for k in 0..D {
-                let coarse = V::integers(sum.bits[0][k]);
-                let fine = V::integers(sum.bits[LEVELS - 1][k]);
+                let numbers = if LEVELS == 1 {
+                    V::numbers(sum.bits[0][k], quanta[0].bias(terms)).lanes()
+                } else {
+                    let (coarse, fine) = (V::integers(sum.bits[0][k]), V::integers(sum.bits[LEVELS - 1][k]));
+                    std::array::from_fn(|lane| {
+                        let coarse = i128::from(coarse[lane].wrapping_sub(quanta[0].bias(terms)));
+                        ((coarse << BITS) + i128::from(fine[lane].wrapping_sub(quanta[1].bias(terms)))) as f64
+                    })
+                };
                 for lane in 0..LANES {
-                    let coarse = quanta[0].multiples(coarse[lane], terms);
-                    force[lane][k] = unit
-                        * if LEVELS == 1 {
-                            coarse as f64
-                        } else {
-                            ((i128::from(coarse) << BITS) + i128::from(quanta[1].multiples(fine[lane], terms))) as f64
-                        };
+                    force[lane][k] = unit * numbers[lane];
                 }
             }
         }
@@ -299,17 +333,20 @@ struct Energies<V: Lanes> {
 
 impl<V: Lanes, const D: usize> Sum<V, D> for Energies<V> {
     #[inline(always)]
-    fn add<P: PairPotential>(&mut self, pairs: &Four<V, P, D>) {
-        let terms = [pairs.energy(self.shifted), pairs.r_squared.mul(pairs.force_over_distance())];
-        for (number, term) in terms.into_iter().enumerate() {
-            // Out of range the square may be infinite, and its product with zero no number.
-            let term = term.where_less(pairs.r_squared, V::splat(f64::INFINITY));
-            self.most[number] = term.larger_bits(self.most[number]);
-            let mut left = term;
-            for level in 0..2 {
-                let shifted = left.add(self.magic[number][level]);
-                self.bits[number][level] = shifted.add_bits(self.bits[number][level]);
-                left = left.sub(shifted.sub(self.magic[number][level]));
+    fn add<L: Law, const N: usize>(&mut self, meeting: &Meeting<V, L, D, N>) {
+        for n in 0..N {
+            let r_squared = meeting.r_squared[n];
+            let terms = [meeting.energy(n, self.shifted), r_squared.mul(meeting.force_over_distance(n))];
+            for number in 0..2 {
+                // Out of range the square may be infinite, and its product with zero no number.
+                let term = terms[number].where_less(r_squared, V::splat(f64::INFINITY));
+                self.most[number] = term.larger_bits(self.most[number]);
+                let mut left = term;
+                for level in 0..2 {
+                    let shifted = left.add(self.magic[number][level]);
+                    self.bits[number][level] = shifted.add_bits(self.bits[number][level]);
+                    left = left.sub(shifted.sub(self.magic[number][level]));
+                }
             }
         }
     }
@@ -332,8 +369,8 @@ impl<L: Law, const D: usize> InLanes for AddEnergies<'_, L, D> {
             for number in 0..2 {
                 let [coarse, fine] = sum.bits[number].map(V::integers);
                 for lane in 0..LANES {
-                    total[number] += i128::from(quanta[number][0].multiples(coarse[lane], terms)) << BITS;
-                    total[number] += i128::from(quanta[number][1].multiples(fine[lane], terms));
+                    total[number] += i128::from(coarse[lane].wrapping_sub(quanta[number][0].bias(terms))) << BITS;
+                    total[number] += i128::from(fine[lane].wrapping_sub(quanta[number][1].bias(terms)));
                 }
             }
         }
