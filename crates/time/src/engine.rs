@@ -13,7 +13,7 @@ use crate::threads;
 /// A caller's time may fall short of the end of a step by this share of it: the rounding of the caller's sums.
 const GUARD: f64 = 1e-6;
 /// A state is kept every so many steps; a failure is answered by going back to it and repeating the good steps.
-const KEPT_EVERY: u64 = 32;
+const KEPT_EVERY: u64 = 128;
 
 /// Particles under forces, advanced in steps of time.
 ///

@@ -132,9 +132,9 @@ impl Rows {
         let start = self.near.len();
         match image {
             Image::None => test.keep_near::<NONE, BLOCKS>(r, blocks, &mut self.near),
-            Image::Along(0) => test.keep_near::<0, BLOCKS>(r, blocks, &mut self.near),
-            Image::Along(1) => test.keep_near::<1, BLOCKS>(r, blocks, &mut self.near),
-            Image::Along(2) => test.keep_near::<2, BLOCKS>(r, blocks, &mut self.near),
+            Image::Along(0) if D > 1 => test.keep_near::<0, BLOCKS>(r, blocks, &mut self.near),
+            Image::Along(1) if D > 1 => test.keep_near::<1, BLOCKS>(r, blocks, &mut self.near),
+            Image::Along(2) if D > 2 => test.keep_near::<2, BLOCKS>(r, blocks, &mut self.near),
             _ => test.keep_near::<ALL, BLOCKS>(r, blocks, &mut self.near),
         }
         if self.near.len() > start {

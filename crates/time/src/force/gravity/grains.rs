@@ -88,7 +88,7 @@ impl<const D: usize> Kernel for Attraction<'_, D> {
                 }
             }
             // A mass among the grains has met itself: its pull is no number.
-            if mass.iter().all(|&mass| mass == 0.0) {
+            if mass.iter().fold(0, |bits, mass| bits | mass.to_bits()) == 0 {
                 for (i, a) in acceleration.iter_mut().enumerate() {
                     *a += Vector::from_fn(|k| pulls[k][i]);
                 }

@@ -117,6 +117,10 @@ impl<V: Lanes, L: Law, const D: usize, const N: usize> Meeting<V, L, D, N> {
 
 /// A sum over the pairs of a block.
 trait Sum<V: Lanes, const D: usize> {
+    /// Whether speed matters enough for code of their own for pairs in need of different images. What they do not need changes
+    /// no bit.
+    const HOT: bool;
+
     fn add<L: Law, const N: usize>(&mut self, meeting: &Meeting<V, L, D, N>);
 }
 
@@ -140,29 +144,29 @@ impl<V: Lanes, const D: usize> Block<V, D> {
 
     /// The block against particles near it.
     #[inline(always)]
-    fn meet<L: Law, const IMAGE: usize>(
+    fn meet<L: Law, S: Sum<V, D>, const IMAGE: usize>(
         &self,
         pairs: &Pairs<'_, L, D>,
         image: &NearestImages<V, D>,
         places: &[u32],
-        sum: &mut impl Sum<V, D>,
+        sum: &mut S,
     ) {
-        let (groups, rest) = places.as_chunks::<TOGETHER>();
+        let (groups, rest) = if S::HOT { places.as_chunks::<TOGETHER>() } else { (&[][..], places) };
         for group in groups {
-            self.meet_group::<L, IMAGE, TOGETHER>(pairs, image, group, sum);
+            self.meet_group::<L, S, IMAGE, TOGETHER>(pairs, image, group, sum);
         }
         for &place in rest {
-            self.meet_group::<L, IMAGE, 1>(pairs, image, &[place], sum);
+            self.meet_group::<L, S, IMAGE, 1>(pairs, image, &[place], sum);
         }
     }
 
     #[inline(always)]
-    fn meet_group<L: Law, const IMAGE: usize, const N: usize>(
+    fn meet_group<L: Law, S: Sum<V, D>, const IMAGE: usize, const N: usize>(
         &self,
         pairs: &Pairs<'_, L, D>,
         image: &NearestImages<V, D>,
         places: &[u32; N],
-        sum: &mut impl Sum<V, D>,
+        sum: &mut S,
     ) {
         let mut there = [self.r; N];
         for n in 0..N {
@@ -210,25 +214,25 @@ fn terms(near: &Near<'_>) -> i64 {
 
 /// Adds all pairs of a block to a sum.
 #[inline(always)]
-fn add_up<V: Lanes, L: Law, const D: usize>(
+fn add_up<V: Lanes, L: Law, S: Sum<V, D>, const D: usize>(
     pairs: &Pairs<'_, L, D>,
     image: &NearestImages<V, D>,
     block: usize,
     near: &Near<'_>,
-    sum: &mut impl Sum<V, D>,
+    sum: &mut S,
 ) {
     let block = Block::<V, D>::new(pairs.blocks, block);
     match near.own {
-        Image::None => block.meet_own::<L, NONE>(pairs.law, image, sum),
+        Image::None if S::HOT => block.meet_own::<L, NONE>(pairs.law, image, sum),
         _ => block.meet_own::<L, ALL>(pairs.law, image, sum),
     }
     for (needed, places) in near.segments() {
         match needed {
-            Image::None => block.meet::<L, NONE>(pairs, image, places, sum),
-            Image::Along(0) => block.meet::<L, 0>(pairs, image, places, sum),
-            Image::Along(1) => block.meet::<L, 1>(pairs, image, places, sum),
-            Image::Along(2) => block.meet::<L, 2>(pairs, image, places, sum),
-            _ => block.meet::<L, ALL>(pairs, image, places, sum),
+            Image::None if S::HOT => block.meet::<L, S, NONE>(pairs, image, places, sum),
+            Image::Along(0) if S::HOT && D > 1 => block.meet::<L, S, 0>(pairs, image, places, sum),
+            Image::Along(1) if S::HOT && D > 1 => block.meet::<L, S, 1>(pairs, image, places, sum),
+            Image::Along(2) if S::HOT && D > 2 => block.meet::<L, S, 2>(pairs, image, places, sum),
+            _ => block.meet::<L, S, ALL>(pairs, image, places, sum),
         }
     }
 }
@@ -249,6 +253,8 @@ struct Forces<V: Lanes, const D: usize, const LEVELS: usize> {
 }
 
 impl<V: Lanes, const D: usize, const LEVELS: usize> Sum<V, D> for Forces<V, D, LEVELS> {
+    const HOT: bool = LEVELS == 1;
+
     #[inline(always)]
     fn add<L: Law, const N: usize>(&mut self, meeting: &Meeting<V, L, D, N>) {
         let mut scale = [V::splat(0.0); N];
@@ -332,6 +338,8 @@ struct Energies<V: Lanes> {
 }
 
 impl<V: Lanes, const D: usize> Sum<V, D> for Energies<V> {
+    const HOT: bool = false;
+
     #[inline(always)]
     fn add<L: Law, const N: usize>(&mut self, meeting: &Meeting<V, L, D, N>) {
         for n in 0..N {
@@ -363,7 +371,7 @@ impl<L: Law, const D: usize> InLanes for AddEnergies<'_, L, D> {
         let (mut total, mut most) = ([0; 2], [V::zeros(); 2]);
         for (block, near) in (pairs.rows.first..).zip(pairs.rows.iter()) {
             let mut sum = Energies { shifted, magic, bits: [[V::zeros(); 2]; 2], most };
-            add_up::<V, L, D>(&pairs, &image, block, &near, &mut sum);
+            add_up::<V, L, _, D>(&pairs, &image, block, &near, &mut sum);
             most = sum.most;
             let terms = terms(&near);
             for number in 0..2 {
