@@ -13,8 +13,10 @@ use blocks::{LargestMoves, take_over};
 pub(crate) use rows::{ALL, Image, NONE, Near, Rows};
 use rows::{Map, Prune, Search, rounded_up};
 
-/// Blocks below which a share of the work is not worth a thread.
-const SMALLEST_SHARE: usize = 128;
+/// Entries of a list from which more than one thread is worth waking: that takes as long as a few thousand of them.
+const WORTH_THREADS: usize = 50_000;
+/// What the first list may hold a block.
+const GUESS: usize = 64;
 /// Shares a thread, where there is more than one: whoever is held up leaves some to the others.
 const SHARES_A_THREAD: usize = 4;
 /// What pruning a list costs, in evaluations of the force from it.
@@ -129,16 +131,16 @@ impl<const D: usize> Neighbours<D> {
     /// Takes over the positions; tells by how much two particles can have come nearer to each other since the list was made.
     fn load(&mut self, boundary: &Boundary<D>, position: &[Vector<D>]) -> f64 {
         let (instructions, image, places) = (self.instructions, NearestImage::new(boundary), self.places_a_share());
-        let one = |((now, before), particle): ((&mut [[f64; D]], &[[f64; D]]), &[u32])| {
+        let one = |now: &mut [[f64; D]], before: &[[f64; D]], particle: &[u32]| {
             take_over(now, particle, position);
             lanes::run(instructions, LargestMoves { image, before, now })
         };
         let (now, before, particle) = (&mut self.blocks.position, &self.pruned_at, &self.blocks.particle);
         let largest = if self.shares.len() == 1 {
-            one(((now, before), particle))
+            one(now, before, particle)
         } else {
             let shares = now.par_chunks_mut(places).zip(before.par_chunks(places)).zip(particle.par_chunks(places));
-            shares.map(one).reduce(|| [0.0; 2], two_largest)
+            shares.map(|((now, before), particle)| one(now, before, particle)).reduce(|| [0.0; 2], two_largest)
         };
         closer_by(largest)
     }
@@ -175,9 +177,10 @@ impl<const D: usize> Neighbours<D> {
     fn build(&mut self, boundary: &Boundary<D>, position: &[Vector<D>]) {
         self.blocks = Blocks::sorted(boundary, position);
         let count = self.blocks.count();
-        let threads = rayon::current_num_threads();
+        let expected = if self.builds == 0 { GUESS * count } else { self.len() };
+        let threads = if expected < WORTH_THREADS { 1 } else { rayon::current_num_threads() };
         let most = if threads == 1 { 1 } else { SHARES_A_THREAD * threads };
-        self.share = count.div_ceil((count / SMALLEST_SHARE).clamp(1, most)).max(1);
+        self.share = count.div_ceil(most).max(1);
         let shares = count.div_ceil(self.share);
         self.wide.resize_with(shares, Rows::default);
         self.shares.resize_with(shares, Rows::default);

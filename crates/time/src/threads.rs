@@ -3,7 +3,8 @@
 /// Particles a thread moves at a time.
 pub(crate) const CHUNK: usize = 2048;
 
-/// Whether simple passes over so many particles should be shared among threads.
+/// Whether simple passes over so many particles should be shared among threads: to wake one takes as long as to move some
+/// ten thousand.
 pub(crate) fn are_worth_it(particles: usize) -> bool {
-    particles >= 2 * CHUNK && rayon::current_num_threads() > 1
+    particles >= 12 * CHUNK && rayon::current_num_threads() > 1
 }
