@@ -5,6 +5,7 @@
 
 pub mod boundary;
 pub mod engine;
+pub mod instructions;
 pub mod observer;
 pub mod particles;
 pub mod placement;
@@ -14,6 +15,7 @@ pub mod vector;
 
 pub use boundary::{Axis, Boundary, Face, Hole, Motion, Obstacle, Partition, Piston};
 pub use engine::{Engine, Failure, Invalid};
+pub use instructions::Instructions;
 pub use observer::{Contact, Meeting, Observer, Party};
 pub use particles::Particles;
 pub use rng::Random;

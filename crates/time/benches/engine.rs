@@ -120,6 +120,38 @@ fn fluid<const D: usize>(count: usize, density: f64, temperature: f64, potential
     fluid
 }
 
+/// The forces of a fluid that has flowed for a while: one evaluation with the list at hand, or one with a new list as well.
+fn evaluations<const D: usize>(
+    bencher: Bencher<'_, '_>,
+    fluid: &TimeDriven<D>,
+    potential: impl PairPotential + 'static,
+    fresh: bool,
+) {
+    let mut force = PairForce::<_, D>::new(potential);
+    let mut acceleration = vec![Vector::ZERO; fluid.particles().len()];
+    bencher.counter(ItemsCount::new(fluid.particles().len())).bench_local(move || {
+        if fresh {
+            force = PairForce::new(potential);
+        }
+        force.accelerate(0.0, fluid.boundary(), fluid.particles(), &mut acceleration);
+        acceleration[0]
+    });
+}
+
+/// One evaluation of the forces in the melt, without and with a new list; counts atoms.
+#[divan::bench(args = [false, true])]
+fn melt_forces(bencher: Bencher<'_, '_>, new_list: bool) {
+    let potential = LennardJones { epsilon: 1.0, sigma: 1.0, cutoff: 2.5 };
+    evaluations(bencher, &fluid::<3>(4000, 0.8442, 1.44, potential), potential, new_list);
+}
+
+/// One evaluation of the forces between discs, without and with a new list; counts particles.
+#[divan::bench(args = [false, true])]
+fn disc_forces(bencher: Bencher<'_, '_>, new_list: bool) {
+    let potential = WeeksChandlerAndersen::new(1.0, 1.0);
+    evaluations(bencher, &fluid::<2>(10_000, 0.6, 1.0, potential), potential, new_list);
+}
+
 /// The melt all codes are compared on: density 0.8442, temperature 1.44, cutoff 2.5, skin 0.3, step 0.005; counts atoms.
 #[divan::bench(args = [4000, 32_000])]
 fn lennard_jones(bencher: Bencher<'_, '_>, count: usize) {

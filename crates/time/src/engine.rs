@@ -8,11 +8,12 @@ use crate::constraint::{Drive, Held, Pin};
 use crate::force::{Force, Tensor, add_product};
 use crate::integrator::{Integrator, Link, Stepper};
 use crate::system::System;
+use crate::threads;
 
 /// A caller's time may fall short of the end of a step by this share of it: the rounding of the caller's sums.
 const GUARD: f64 = 1e-6;
 /// A state is kept every so many steps; a failure is answered by going back to it and repeating the good steps.
-const KEPT_EVERY: u64 = 32;
+const KEPT_EVERY: u64 = 128;
 
 /// Particles under forces, advanced in steps of time.
 ///
@@ -254,23 +255,15 @@ impl<const D: usize> TimeDriven<D> {
         acceleration.clone_from(&self.kept.acceleration);
         *fresh = self.kept.fresh;
         self.stepper.set_links(&self.kept.links);
+        self.system.forget_owed();
     }
 
     /// Every whole step of length `dt` up to `to`.
     fn advance_fixed<O: Observer<D>>(&mut self, dt: f64, to: f64, observer: &mut O) -> Result<(), Failure> {
         let last = (to / dt + GUARD).floor();
         while (self.steps as f64) < last {
-            if self.steps.is_multiple_of(KEPT_EVERY) {
-                self.keep();
-            }
-            if let Err(failure) = self.step_fixed(dt) {
-                let good = self.steps;
-                self.restore();
-                while self.steps < good {
-                    self.step_fixed(dt)?;
-                }
-                self.system.contacts.clear();
-                return Err(failure);
+            if let Err(failure) = self.step_kept(dt) {
+                return self.recover(failure, dt);
             }
             let mut flow = ControlFlow::Continue(());
             for contact in self.system.contacts.drain(..) {
@@ -282,19 +275,51 @@ impl<const D: usize> TimeDriven<D> {
                 break;
             }
         }
-        Ok(())
+        self.settle().or_else(|failure| self.recover(failure, dt))
+    }
+
+    /// Goes back to the last good state, and fails.
+    fn recover(&mut self, failure: Failure, dt: f64) -> Result<(), Failure> {
+        // What went wrong may be a kick put off from the last step.
+        let good = self.steps - u64::from(failure.time <= self.time);
+        self.restore();
+        self.time = self.steps as f64 * dt;
+        while self.steps < good {
+            self.step_fixed(dt)?;
+        }
+        self.settle()?;
+        self.system.contacts.clear();
+        Err(failure)
+    }
+
+    /// One step, from a state that is kept every now and then.
+    fn step_kept(&mut self, dt: f64) -> Result<(), Failure> {
+        if self.steps.is_multiple_of(KEPT_EVERY) {
+            self.settle()?;
+            self.keep();
+        }
+        self.step_fixed(dt)
     }
 
     fn step_fixed(&mut self, dt: f64) -> Result<(), Failure> {
         let (start, end) = (self.steps as f64 * dt, (self.steps + 1) as f64 * dt);
-        self.stepper.step(&mut self.system, start, end, dt)?;
-        if let Some(i) = self.system.first_lost() {
-            let cause = "position or velocity is no longer a number: a force overflowed; use a smaller dt".to_owned();
-            return Err(Failure { time: end, particle: Some(i), cause });
+        let (stepper, system) = (&mut self.stepper, &mut self.system);
+        if threads::are_worth_it(system.particles.len()) {
+            // Into the pool once a step, not once a pass.
+            rayon::scope(|_| stepper.step(system, start, end, dt))?;
+        } else {
+            stepper.step(system, start, end, dt)?;
         }
+        system.check(end)?;
         self.steps += 1;
         self.time = end;
         Ok(())
+    }
+
+    /// Does the kick that the last step put off.
+    fn settle(&mut self) -> Result<(), Failure> {
+        self.system.settle();
+        self.system.check(self.time)
     }
 }
 

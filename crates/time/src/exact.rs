@@ -34,19 +34,19 @@ impl Quantum {
         Self { exponent, magic: libm::scalbn(3.0, exponent + BITS) }
     }
 
-    /// The nearest multiple of the quantum, for `|x|` below the bound; anything beyond it, never a trap.
-    #[inline(always)]
-    pub(crate) fn round(self, x: f64) -> i64 {
-        (x + self.magic).to_bits().wrapping_sub(self.magic.to_bits()) as i64
+    /// What a term `x` below the bound is added to: the last bits of the sum are the nearest multiple of the quantum, and the
+    /// sum less this number is that multiple as a number. Terms beyond the bound give anything, never a trap.
+    pub(crate) fn magic(self) -> f64 {
+        self.magic
     }
 
-    /// The nearest multiple, and what is left.
+    /// What the sum, which wraps around, of the bits of so many of those sums is larger by than the sum of their multiples.
     #[inline(always)]
-    pub(crate) fn split(self, x: f64) -> (i64, f64) {
-        (self.round(x), x - ((x + self.magic) - self.magic))
+    pub(crate) fn bias(self, terms: i64) -> i64 {
+        terms.wrapping_mul(self.magic.to_bits() as i64)
     }
 
-    /// The quantum for what [`split`](Self::split) leaves: `2^-51` of this one.
+    /// The quantum for what terms leave: `2^-51` of this one.
     pub(crate) fn finer(self) -> Self {
         Self::with_exponent(self.exponent - BITS)
     }
@@ -73,7 +73,10 @@ mod tests {
         let mut random = Random::new(1, 0);
         let quantum = Quantum::for_terms_up_to(1000.0);
         let mut terms: Vec<f64> = (0..1000).map(|_| 300.0 * random.normal().clamp(-3.0, 3.0)).collect();
-        let sum = |terms: &[f64]| terms.iter().fold(0i64, |sum, &x| sum.wrapping_add(quantum.round(x)));
+        let sum = |terms: &[f64]| {
+            let bits = terms.iter().fold(0i64, |sum, &x| sum.wrapping_add((x + quantum.magic()).to_bits() as i64));
+            bits.wrapping_sub(quantum.bias(terms.len() as i64))
+        };
         let forwards = sum(&terms);
         let plain: f64 = terms.iter().sum();
         // Each term is off by half a quantum at most, the plain sum by a rounding of up to 1e5 a term.
@@ -96,7 +99,8 @@ mod tests {
         assert_eq!(fine.coarsened(1025.0).unit(), fine.unit() * 256.0);
         assert_eq!(fine.coarsened(1025.0).coarsened(1.0), fine.coarsened(1025.0));
         for x in [1e-300, 3.0, 1023.9, -777.0] {
-            let (multiple, left) = fine.split(x);
+            let shifted = x + fine.magic();
+            let (multiple, left) = ((shifted.to_bits() as i64).wrapping_sub(fine.bias(1)), x - (shifted - fine.magic()));
             assert_eq!(multiple as f64 * fine.unit() + left, x);
             assert!(left.abs() <= 0.5 * fine.unit());
         }

@@ -30,11 +30,12 @@ mod engine;
 mod exact;
 pub mod force;
 mod image;
-mod instructions;
 mod integrator;
+mod lanes;
 mod motion;
 mod neighbours;
 mod system;
+mod threads;
 
 pub use constraint::{Drive, Pin, Signal};
 pub use engine::TimeDriven;

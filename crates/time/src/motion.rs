@@ -1,15 +1,20 @@
 //! Kicks and drifts of whole arrays.
 
-use crate::instructions::Kernel;
+use corpuscle_core::instructions::{Instructions, Kernel};
+use corpuscle_core::{Axis, Boundary, Vector};
+use rayon::prelude::*;
+
+use crate::lanes::{self, InLanes, Lanes};
+use crate::threads::{self, CHUNK};
 
 /// Numbers handled together.
 const LANES: usize = 8;
 
 /// `v += a dt`, component by component. Tells whether every result is a finite number.
-pub(crate) struct Kick<'a> {
-    pub(crate) velocity: &'a mut [f64],
-    pub(crate) acceleration: &'a [f64],
-    pub(crate) dt: f64,
+struct Kick<'a> {
+    velocity: &'a mut [f64],
+    acceleration: &'a [f64],
+    dt: f64,
 }
 
 impl Kernel for Kick<'_> {
@@ -36,27 +41,35 @@ impl Kernel for Kick<'_> {
     }
 }
 
-/// `v += a kick`, then `r += v drift`, component by component. Tells whether every `r` is a finite number.
-pub(crate) struct KickAndDrift<'a> {
-    pub(crate) position: &'a mut [f64],
-    pub(crate) velocity: &'a mut [f64],
-    pub(crate) acceleration: &'a [f64],
-    pub(crate) kick: f64,
-    pub(crate) drift: f64,
+/// `v += a owed` if anything is, `v += a kick`, then `r += v drift`, component by component. Tells whether every `v` was a finite
+/// number before the second, and whether every `r` is.
+struct KickAndDrift<'a, const OWED: bool> {
+    position: &'a mut [f64],
+    velocity: &'a mut [f64],
+    acceleration: &'a [f64],
+    owed: f64,
+    kick: f64,
+    drift: f64,
 }
 
-impl Kernel for KickAndDrift<'_> {
-    type Output = bool;
+impl<const OWED: bool> Kernel for KickAndDrift<'_, OWED> {
+    type Output = [bool; 2];
 
     #[inline(always)]
-    fn run(self) -> bool {
-        let Self { kick, drift, .. } = self;
+    fn run(self) -> [bool; 2] {
+        let Self { owed, kick, drift, .. } = self;
         let (positions, last_positions) = self.position.as_chunks_mut::<LANES>();
         let (velocities, last_velocities) = self.velocity.as_chunks_mut::<LANES>();
         let (accelerations, last_accelerations) = self.acceleration.as_chunks::<LANES>();
-        let mut doubt = Doubt::default();
+        let (mut doubt_before, mut doubt) = (Doubt::default(), Doubt::default());
         for ((position, velocity), acceleration) in positions.iter_mut().zip(velocities).zip(accelerations) {
             let (mut r, mut v) = (*position, *velocity);
+            if OWED {
+                for lane in 0..LANES {
+                    v[lane] += acceleration[lane] * owed;
+                }
+                doubt_before.consider(&v);
+            }
             for lane in 0..LANES {
                 v[lane] += acceleration[lane] * kick;
                 r[lane] += v[lane] * drift;
@@ -65,11 +78,144 @@ impl Kernel for KickAndDrift<'_> {
             (*position, *velocity) = (r, v);
         }
         for ((r, v), a) in last_positions.iter_mut().zip(last_velocities).zip(last_accelerations) {
+            if OWED {
+                *v += a * owed;
+                doubt_before.consider(&[*v; LANES]);
+            }
             *v += a * kick;
             *r += *v * drift;
             doubt.consider(&[*r; LANES]);
         }
-        doubt.is_none()
+        [doubt_before.is_none(), doubt.is_none()]
+    }
+}
+
+/// `v += a dt` for all; tells whether every `v` is finite.
+pub(crate) fn kick<const D: usize>(velocity: &mut [Vector<D>], acceleration: &[Vector<D>], dt: f64) -> bool {
+    let instructions = Instructions::detect();
+    let one = |(velocity, acceleration): (&mut [Vector<D>], &[Vector<D>])| {
+        let (velocity, acceleration) = (Vector::components_mut(velocity), Vector::components(acceleration));
+        instructions.run(Kick { velocity, acceleration, dt })
+    };
+    if threads::are_worth_it(velocity.len()) {
+        velocity.par_chunks_mut(CHUNK).zip(acceleration.par_chunks(CHUNK)).map(one).reduce(|| true, |a, b| a && b)
+    } else {
+        one((velocity, acceleration))
+    }
+}
+
+/// `v += a owed` if anything is, `v += a kick`, then `r += v drift` for all; tells whether every `v` was finite before the second,
+/// and whether every `r` is.
+pub(crate) fn kick_and_drift<const D: usize>(
+    position: &mut [Vector<D>],
+    velocity: &mut [Vector<D>],
+    acceleration: &[Vector<D>],
+    owed: Option<f64>,
+    [kick, drift]: [f64; 2],
+) -> [bool; 2] {
+    let instructions = Instructions::detect();
+    let one = |((position, velocity), acceleration): ((&mut [Vector<D>], &mut [Vector<D>]), &[Vector<D>])| {
+        let (position, velocity) = (Vector::components_mut(position), Vector::components_mut(velocity));
+        let acceleration = Vector::components(acceleration);
+        match owed {
+            Some(owed) => instructions.run(KickAndDrift::<true> { position, velocity, acceleration, owed, kick, drift }),
+            None => instructions.run(KickAndDrift::<false> { position, velocity, acceleration, owed: 0.0, kick, drift }),
+        }
+    };
+    if threads::are_worth_it(position.len()) {
+        let chunks = position.par_chunks_mut(CHUNK).zip(velocity.par_chunks_mut(CHUNK)).zip(acceleration.par_chunks(CHUNK));
+        chunks.map(one).reduce(|| [true; 2], |a, b| [a[0] && b[0], a[1] && b[1]])
+    } else {
+        one(((position, velocity), acceleration))
+    }
+}
+
+/// Brings a position into the primary box and counts the faces it went through.
+pub(crate) fn wrap<const D: usize>(boundary: &Boundary<D>, position: &mut Vector<D>, images: &mut [i64; D]) {
+    let (r, wrapped) = (*position, boundary.wrap(*position));
+    for k in 0..D {
+        if wrapped[k] != r[k] {
+            images[k] += ((r[k] - wrapped[k]) / (boundary.upper[k] - boundary.lower[k])).round() as i64;
+        }
+    }
+    *position = wrapped;
+}
+
+/// Brings all positions into the primary box.
+pub(crate) fn wrap_all<const D: usize>(boundary: &Boundary<D>, position: &mut [Vector<D>], images: &mut [[i64; D]]) {
+    /// Particles looked at together: most of the time none of them is outside.
+    const FEW: usize = 64;
+    let instructions = Instructions::detect();
+    let inside = Inside::new(boundary);
+    let one = |(position, images): (&mut [Vector<D>], &mut [[i64; D]])| {
+        for (position, images) in position.chunks_mut(FEW).zip(images.chunks_mut(FEW)) {
+            if !lanes::run(instructions, All(&inside, position)) {
+                for (r, images) in position.iter_mut().zip(images) {
+                    if (0..D).any(|k| inside.is_outside(k, r[k])) {
+                        wrap(boundary, r, images);
+                    }
+                }
+            }
+        }
+    };
+    if threads::are_worth_it(position.len()) {
+        position.par_chunks_mut(CHUNK).zip(images.par_chunks_mut(CHUNK)).for_each(one);
+    } else {
+        one((position, images));
+    }
+}
+
+/// The primary box: the least and the largest coordinate within, infinite along axes that are not periodic.
+struct Inside<const D: usize> {
+    least: [f64; D],
+    largest: [f64; D],
+}
+
+impl<const D: usize> Inside<D> {
+    fn new(boundary: &Boundary<D>) -> Self {
+        let periodic = |k: usize| boundary.axes[k] == Axis::Periodic;
+        Self {
+            least: std::array::from_fn(|k| if periodic(k) { boundary.lower[k] } else { f64::NEG_INFINITY }),
+            largest: std::array::from_fn(|k| if periodic(k) { boundary.upper[k].next_down() } else { f64::INFINITY }),
+        }
+    }
+
+    #[inline(always)]
+    fn is_outside(&self, k: usize, x: f64) -> bool {
+        x < self.least[k] || self.largest[k] < x
+    }
+}
+
+/// Whether all of these positions are inside.
+struct All<'a, const D: usize>(&'a Inside<D>, &'a [Vector<D>]);
+
+impl<const D: usize> InLanes for All<'_, D> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) -> bool {
+        let Self(inside, positions) = self;
+        let (fours, rest) = positions.as_chunks::<{ lanes::LANES }>();
+        // Four positions are D vectors: component n of them is along axis n modulo D.
+        let mut bounds = [(V::splat(0.0), V::splat(0.0)); D];
+        for n in 0..D {
+            let axis: [usize; lanes::LANES] = std::array::from_fn(|lane| (n * lanes::LANES + lane) % D);
+            bounds[n] = (V::new(axis.map(|k| inside.least[k])), V::new(axis.map(|k| inside.largest[k])));
+        }
+        let mut outside = false;
+        for four in fours {
+            let (vectors, _) = Vector::components(four).as_chunks::<{ lanes::LANES }>();
+            for n in 0..D {
+                let x = V::new(vectors[n]);
+                outside |= x.any_less(bounds[n].0) | bounds[n].1.any_less(x);
+            }
+        }
+        for r in rest {
+            for k in 0..D {
+                outside |= inside.is_outside(k, r[k]);
+            }
+        }
+        !outside
     }
 }
 

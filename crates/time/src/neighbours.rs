@@ -3,35 +3,47 @@
 mod blocks;
 mod rows;
 
-use corpuscle_core::{Axis, Boundary, Vector};
+use corpuscle_core::{Axis, Boundary, Instructions, Vector};
 use rayon::prelude::*;
 
-pub(crate) use blocks::{Blocks, LANES, Lanes};
-use rows::{Map, Search};
-pub(crate) use rows::{Rows, Share};
-
 use crate::image::NearestImage;
-use crate::instructions::{Instructions, Kernel};
+use crate::lanes::{self, LANES};
+pub(crate) use blocks::{Blocks, column, norm_squared};
+use blocks::{LargestMoves, take_over};
+pub(crate) use rows::{ALL, Image, NONE, Near, Rows};
+use rows::{Map, Prune, Search, rounded_up};
 
-/// Blocks below which a share of the work is not worth a thread.
-const SMALLEST_SHARE: usize = 128;
-/// What building a list costs, in evaluations of the force from it.
+/// Entries of a list from which more than one thread is worth waking: that takes as long as a few thousand of them.
+const WORTH_THREADS: usize = 50_000;
+/// What the first list may hold a block.
+const GUESS: usize = 64;
+/// Shares a thread, where there is more than one: whoever is held up leaves some to the others.
+const SHARES_A_THREAD: usize = 4;
+/// What pruning a list costs, in evaluations of the force from it.
+const PRUNE_COST: f64 = 1.0;
+/// What sorting and searching costs, in evaluations of the force.
 const BUILD_COST: f64 = 4.0;
 
-/// The pairs of particles within cutoff plus skin (Verlet 1967, doi:10.1103/PhysRev.159.98), from every particle to blocks
-/// of four others that are next to each other in space and in memory.
+/// The pairs of particles within cutoff plus skin (Verlet 1967, doi:10.1103/PhysRev.159.98), from blocks of four particles next
+/// to each other in space to the others near any of the four.
 ///
 /// The list holds until two particles together have moved by the skin; until then no pair can have come within the cutoff
-/// unseen. Left to itself the skin follows from what was seen: a wide one holds for longer and lists more pairs.
+/// unseen. It is then pruned from a wider one, and only when that does not hold any more are particles sorted and searched for
+/// anew. Left to itself the skin follows from what was seen: a wide one holds for longer and lists more pairs.
 #[derive(Clone, Debug)]
 pub struct Neighbours<const D: usize> {
     cutoff: f64,
     skin: f64,
+    wide_skin: f64,
     skin_is_given: bool,
     instructions: Instructions,
     pub(crate) blocks: Blocks<D>,
-    pub(crate) shares: Vec<Share>,
-    built_at: Vec<[Lanes<f64>; D]>,
+    /// Pairs within the cutoff and the skin, in shares of [`share`](Self::share) blocks.
+    pub(crate) shares: Vec<Rows>,
+    share: usize,
+    wide: Vec<Rows>,
+    pruned_at: Vec<[f64; D]>,
+    built_at: Vec<[f64; D]>,
     built_in: Option<([Axis; D], Vector<D>, Vector<D>)>,
     builds: u64,
     uses: u64,
@@ -40,18 +52,24 @@ pub struct Neighbours<const D: usize> {
 impl<const D: usize> Neighbours<D> {
     /// An empty list for pairs within `cutoff`, with the margin `skin`; one that chooses its margin if there is none.
     pub fn new(cutoff: f64, skin: Option<f64>) -> Self {
-        Self {
+        let mut neighbours = Self {
             cutoff,
             skin: skin.unwrap_or(0.1 * cutoff),
+            wide_skin: 0.0,
             skin_is_given: skin.is_some(),
             instructions: Instructions::detect(),
             blocks: Blocks::empty(),
             shares: vec![],
+            share: 1,
+            wide: vec![],
+            pruned_at: vec![],
             built_at: vec![],
             built_in: None,
             builds: 0,
             uses: 0,
-        }
+        };
+        neighbours.choose_wide_skin();
+        neighbours
     }
 
     /// The margin beyond the cutoff.
@@ -59,10 +77,9 @@ impl<const D: usize> Neighbours<D> {
         self.skin
     }
 
-    /// Pairs of a particle and a block in the list: the pairs a kernel looks at are four times as many.
+    /// Particles near blocks, block by block: a kernel looks at four times as many pairs, and sees each from both sides.
     pub fn len(&self) -> usize {
-        let rows = self.shares.iter().flat_map(|share| [&share.direct, &share.imaged]);
-        rows.map(|rows| rows.blocks.len() + rows.places.len()).sum()
+        self.shares.iter().map(Rows::len).sum()
     }
 
     /// Whether the list is empty.
@@ -70,77 +87,142 @@ impl<const D: usize> Neighbours<D> {
         self.len() == 0
     }
 
-    /// How often the list was built.
+    /// How often particles were sorted and searched for.
     pub fn builds(&self) -> u64 {
         self.builds
     }
 
-    /// Takes over the positions; builds the list anew where it no longer holds.
+    /// Takes over the positions; makes the list anew where it no longer holds.
     pub fn update(&mut self, boundary: &Boundary<D>, position: &[Vector<D>]) {
-        let mut moved = 0.0;
-        if self.built_in == Some((boundary.axes, boundary.lower, boundary.upper)) && self.blocks.place.len() == position.len() {
-            self.blocks.load(position);
-            moved = self.moved(boundary, &self.blocks);
-            if moved < self.skin {
-                self.uses += 1;
+        self.uses += 1;
+        if self.fits(boundary, position) {
+            if self.load(boundary, position) < self.skin {
                 return;
             }
+            let moved = self.moved(boundary, &self.built_at, &self.blocks);
+            if moved + self.skin <= self.wide_skin {
+                self.prune(boundary);
+                return;
+            }
+            self.choose_skin(moved);
         }
-        self.choose_skin(moved);
         self.build(boundary, position);
     }
 
     /// The blocks with other positions, if the list still holds for them.
     pub(crate) fn blocks_at(&self, boundary: &Boundary<D>, position: &[Vector<D>]) -> Option<Blocks<D>> {
-        if self.built_in != Some((boundary.axes, boundary.lower, boundary.upper)) || self.blocks.place.len() != position.len() {
+        if !self.fits(boundary, position) {
             return None;
         }
         let mut blocks = self.blocks.clone();
         blocks.load(position);
-        (self.moved(boundary, &blocks) < self.skin).then_some(blocks)
+        (self.moved(boundary, &self.pruned_at, &blocks) < self.skin).then_some(blocks)
     }
 
-    /// By how much two particles can have come nearer to each other since the list was built.
-    fn moved(&self, boundary: &Boundary<D>, blocks: &Blocks<D>) -> f64 {
-        struct Moves<'a, const D: usize>(NearestImage<D>, &'a [[Lanes<f64>; D]], &'a [[Lanes<f64>; D]]);
-        impl<const D: usize> Kernel for Moves<'_, D> {
-            type Output = [f64; 2];
-            #[inline(always)]
-            fn run(self) -> [f64; 2] {
-                blocks::largest_moves(&self.0, self.1, self.2)
-            }
-        }
-        let moves = Moves(NearestImage::new(boundary), &self.built_at, &blocks.position);
-        self.instructions.run(moves).map(f64::sqrt).iter().sum()
+    /// Places in each share but the last.
+    pub(crate) fn places_a_share(&self) -> usize {
+        self.share * LANES
+    }
+
+    fn fits(&self, boundary: &Boundary<D>, position: &[Vector<D>]) -> bool {
+        self.built_in == Some((boundary.axes, boundary.lower, boundary.upper)) && self.blocks.place.len() == position.len()
+    }
+
+    /// Takes over the positions; tells by how much two particles can have come nearer to each other since the list was made.
+    fn load(&mut self, boundary: &Boundary<D>, position: &[Vector<D>]) -> f64 {
+        let (instructions, image, places) = (self.instructions, NearestImage::new(boundary), self.places_a_share());
+        let one = |now: &mut [[f64; D]], before: &[[f64; D]], particle: &[u32]| {
+            take_over(now, particle, position);
+            lanes::run(instructions, LargestMoves { image, before, now })
+        };
+        let (now, before, particle) = (&mut self.blocks.position, &self.pruned_at, &self.blocks.particle);
+        let largest = if self.shares.len() == 1 {
+            one(now, before, particle)
+        } else {
+            let shares = now.par_chunks_mut(places).zip(before.par_chunks(places)).zip(particle.par_chunks(places));
+            shares.map(|((now, before), particle)| one(now, before, particle)).reduce(|| [0.0; 2], two_largest)
+        };
+        closer_by(largest)
+    }
+
+    /// By how much two particles can have come nearer to each other since they were `before`.
+    fn moved(&self, boundary: &Boundary<D>, before: &[[f64; D]], blocks: &Blocks<D>) -> f64 {
+        let moves = LargestMoves { image: NearestImage::new(boundary), before, now: &blocks.position };
+        closer_by(lanes::run(self.instructions, moves))
     }
 
     /// The skin `s` of least cost. A force evaluation costs in proportion to the volume within reach, `(r + s)^D`, where `r`
-    /// stands for cutoff and size of a block; a list costs `BUILD_COST` evaluations every `s/v` steps, if particles close in
-    /// by `v` a step. To first order in `s` the cost is `1 + D s / r + BUILD_COST v / s`, least at
-    /// `s = sqrt(BUILD_COST v r / D)`.
+    /// stands for cutoff and size of a block; pruning costs `PRUNE_COST` evaluations every `s/v` steps, if particles close in
+    /// by `v` a step. To first order in `s` the cost is `1 + D s / r + PRUNE_COST v / s`, least at
+    /// `s = sqrt(PRUNE_COST v r / D)`.
     fn choose_skin(&mut self, moved: f64) {
-        if !self.skin_is_given && self.uses > 0 {
-            let v = moved / (self.uses + 1) as f64;
-            let r = 1.5 * self.cutoff;
-            self.skin = (BUILD_COST * v * r / D as f64).sqrt().clamp(0.02 * self.cutoff, self.cutoff);
+        if !self.skin_is_given {
+            let v = moved / self.uses as f64;
+            self.skin = (PRUNE_COST * v * self.range() / D as f64).sqrt().clamp(0.02 * self.cutoff, self.cutoff);
+            self.choose_wide_skin();
         }
-        self.uses = 0;
+    }
+
+    /// The wider skin `w` of least cost: pruning costs `PRUNE_COST (1 + D w / r)` evaluations every `s/v` steps, building
+    /// `BUILD_COST` every `(w - s)/v`. The sum is least at `w = s + sqrt(s r BUILD_COST / (PRUNE_COST D))`.
+    fn choose_wide_skin(&mut self) {
+        let wider = (self.skin * self.range() * BUILD_COST / (PRUNE_COST * D as f64)).sqrt();
+        self.wide_skin = self.skin + wider.min(self.cutoff);
+    }
+
+    fn range(&self) -> f64 {
+        1.5 * self.cutoff
     }
 
     fn build(&mut self, boundary: &Boundary<D>, position: &[Vector<D>]) {
         self.blocks = Blocks::sorted(boundary, position);
-        let blocks = &self.blocks;
-        let count = blocks.position.len();
-        let map = Map::new(boundary, blocks, self.cutoff, self.skin);
-        let shares = (count / SMALLEST_SHARE).clamp(1, rayon::current_num_threads());
-        self.shares.resize_with(shares, Share::default);
-        let instructions = self.instructions;
-        self.shares.par_iter_mut().enumerate().for_each(|(number, share)| {
-            let range = count * number / shares..count * (number + 1) / shares;
-            instructions.run(Search { map: &map, range, share });
-        });
-        self.built_at.clone_from(&blocks.position);
+        let count = self.blocks.count();
+        let expected = if self.builds == 0 { GUESS * count } else { self.len() };
+        let threads = if expected < WORTH_THREADS { 1 } else { rayon::current_num_threads() };
+        let most = if threads == 1 { 1 } else { SHARES_A_THREAD * threads };
+        self.share = count.div_ceil(most).max(1);
+        let shares = count.div_ceil(self.share);
+        self.wide.resize_with(shares, Rows::default);
+        self.shares.resize_with(shares, Rows::default);
+        let map = Map::new(boundary, &self.blocks, self.cutoff, self.wide_skin);
+        let (instructions, share) = (self.instructions, self.share);
+        let search = |(number, rows): (usize, &mut Rows)| {
+            let range = share * number..count.min(share * (number + 1));
+            lanes::run(instructions, Search { map: &map, range, rows });
+        };
+        if shares == 1 {
+            self.wide.iter_mut().enumerate().for_each(search);
+        } else {
+            self.wide.par_iter_mut().enumerate().for_each(search);
+        }
+        self.built_at.clone_from(&self.blocks.position);
         self.built_in = Some((boundary.axes, boundary.lower, boundary.upper));
         self.builds += 1;
+        self.uses = 0;
+        self.prune(boundary);
     }
+
+    /// Makes the list from the wider one.
+    fn prune(&mut self, boundary: &Boundary<D>) {
+        let Self { blocks, wide, shares, instructions, .. } = self;
+        // Positions outside the box cost no pair here: the nearest image is that of the pair, wherever the two are.
+        let (image, reach) = (NearestImage::new(boundary), rounded_up(self.cutoff + self.skin));
+        let prune = |(rows, wide): (&mut Rows, &Rows)| lanes::run(*instructions, Prune { image, blocks, reach, wide, rows });
+        if wide.len() == 1 {
+            shares.iter_mut().zip(&*wide).for_each(prune);
+        } else {
+            shares.par_iter_mut().zip(&*wide).for_each(prune);
+        }
+        self.pruned_at.clone_from(&self.blocks.position);
+    }
+}
+
+/// The two largest of two pairs, each the larger first.
+fn two_largest([a, b]: [f64; 2], [c, d]: [f64; 2]) -> [f64; 2] {
+    if a > c { [a, b.max(c)] } else { [c, a.max(d)] }
+}
+
+/// By how much two particles come nearer to each other that move by the roots of these squares.
+fn closer_by(squares: [f64; 2]) -> f64 {
+    squares[0].sqrt() + squares[1].sqrt()
 }

@@ -2,10 +2,12 @@
 
 use corpuscle_core::{Axis, Boundary, Contact, Failure, Invalid, Meeting, Particles, Party, Vector};
 
+use rayon::prelude::*;
+
 use crate::constraint::Held;
 use crate::force::Force;
-use crate::instructions::Instructions;
-use crate::motion::{Kick, KickAndDrift};
+use crate::motion;
+use crate::threads::{self, CHUNK};
 
 /// State and forces. Scratch arrays live beside what uses them.
 pub(crate) struct System<const D: usize> {
@@ -20,6 +22,8 @@ pub(crate) struct System<const D: usize> {
     pub(crate) fresh: bool,
     /// Hits of walls since they were last taken out.
     pub(crate) contacts: Vec<Contact<D>>,
+    /// A kick that is still to be done.
+    owed: Option<f64>,
     /// What rounding took from the positions, where the integrator knows it; else empty.
     pub(crate) remainder: Vec<Vector<D>>,
     /// Whether positions or velocities may have become something else than finite numbers.
@@ -41,6 +45,7 @@ impl<const D: usize> System<D> {
             acceleration: vec![Vector::ZERO; n],
             fresh: false,
             contacts: vec![],
+            owed: None,
             remainder: vec![],
             doubtful: true,
             velocity_dependent,
@@ -112,7 +117,11 @@ impl<const D: usize> System<D> {
             self.estimate.extend(self.particles.velocity.iter().zip(&self.acceleration).map(|(&v, &a)| v + a * lag));
             std::mem::swap(&mut self.estimate, &mut self.particles.velocity);
         }
-        self.acceleration.fill(Vector::ZERO);
+        if threads::are_worth_it(self.acceleration.len()) {
+            self.acceleration.par_chunks_mut(CHUNK).for_each(|acceleration| acceleration.fill(Vector::ZERO));
+        } else {
+            self.acceleration.fill(Vector::ZERO);
+        }
         for force in &mut self.forces {
             if self.remainder.is_empty() {
                 force.accelerate(time, &self.boundary, &self.particles, &mut self.acceleration);
@@ -131,20 +140,36 @@ impl<const D: usize> System<D> {
 
     /// `v += a dt`.
     pub(crate) fn kick(&mut self, dt: f64) {
-        let velocity = Vector::components_mut(&mut self.particles.velocity);
-        let acceleration = Vector::components(&self.acceleration);
-        let finite = Instructions::detect().run(Kick { velocity, acceleration, dt });
-        self.doubtful |= !finite;
+        self.doubtful |= !motion::kick(&mut self.particles.velocity, &self.acceleration, dt);
     }
 
-    /// `v += a kick`, then `r += v drift`, in one pass.
-    pub(crate) fn kick_and_drift(&mut self, kick: f64, drift: f64) {
-        let position = Vector::components_mut(&mut self.particles.position);
-        let velocity = Vector::components_mut(&mut self.particles.velocity);
-        let acceleration = Vector::components(&self.acceleration);
-        let finite = Instructions::detect().run(KickAndDrift { position, velocity, acceleration, kick, drift });
-        self.doubtful |= !finite;
+    /// The same, put off until the next [`kick_and_drift`](Self::kick_and_drift) or [`settle`](Self::settle): the last kick of a
+    /// step and the first of the next are by the same accelerations, and one pass over the memory does both.
+    pub(crate) fn owe_kick(&mut self, dt: f64) {
+        self.owed = Some(dt);
+    }
+
+    /// Drops what was put off.
+    pub(crate) fn forget_owed(&mut self) {
+        self.owed = None;
+    }
+
+    /// Does what was put off.
+    pub(crate) fn settle(&mut self) {
+        if let Some(owed) = self.owed.take() {
+            self.kick(owed);
+        }
+    }
+
+    /// `v += a kick`, then `r += v drift`, in one pass. Tells whether the kick put off before, if there was one, left every
+    /// velocity a finite number.
+    pub(crate) fn kick_and_drift(&mut self, kick: f64, drift: f64) -> bool {
+        let Particles { position, velocity, .. } = &mut self.particles;
+        let owed = self.owed.take();
+        let [before, now] = motion::kick_and_drift(position, velocity, &self.acceleration, owed, [kick, drift]);
+        self.doubtful |= !(before && now);
         self.fresh = false;
+        before
     }
 
     /// Puts held and driven coordinates where they have to be at `time`.
@@ -166,27 +191,20 @@ impl<const D: usize> System<D> {
     /// Reflects at walls and wraps around periodic axes what moved out of the box in a step of length `dt` that ends at
     /// `end`. Hits of walls are kept for the observer.
     pub(crate) fn confine(&mut self, end: f64, dt: f64) -> Result<(), Failure> {
-        if self.boundary.axes.iter().all(|&axis| axis == Axis::Open) {
+        if self.boundary.axes.contains(&Axis::Periodic) {
+            motion::wrap_all(&self.boundary, &mut self.particles.position, &mut self.images);
+        }
+        if !self.boundary.axes.contains(&Axis::Walls) {
             return Ok(());
         }
         for i in 0..self.particles.len() {
             for k in 0..D {
-                let (lower, upper) = (self.boundary.lower[k], self.boundary.upper[k]);
-                let x = self.particles.position[i][k];
-                match self.boundary.axes[k] {
-                    Axis::Open => {}
-                    Axis::Periodic => {
-                        if !(lower <= x && x < upper) {
-                            self.wrap(i);
-                        }
-                    }
-                    Axis::Walls => {
-                        let radius = self.particles.radius[i];
-                        if x < lower + radius {
-                            self.reflect(i, k, false, end, dt)?;
-                        } else if x > upper - radius {
-                            self.reflect(i, k, true, end, dt)?;
-                        }
+                if self.boundary.axes[k] == Axis::Walls {
+                    let (x, radius) = (self.particles.position[i][k], self.particles.radius[i]);
+                    if x < self.boundary.lower[k] + radius {
+                        self.reflect(i, k, false, end, dt)?;
+                    } else if x > self.boundary.upper[k] - radius {
+                        self.reflect(i, k, true, end, dt)?;
                     }
                 }
             }
@@ -199,15 +217,8 @@ impl<const D: usize> System<D> {
     }
 
     /// Brings particle `i` into the primary box and counts the faces it went through.
-    pub(crate) fn wrap(&mut self, i: usize) {
-        let r = self.particles.position[i];
-        let wrapped = self.boundary.wrap(r);
-        for k in 0..D {
-            if wrapped[k] != r[k] {
-                self.images[i][k] += ((r[k] - wrapped[k]) / (self.boundary.upper[k] - self.boundary.lower[k])).round() as i64;
-            }
-        }
-        self.particles.position[i] = wrapped;
+    fn wrap(&mut self, i: usize) {
+        motion::wrap(&self.boundary, &mut self.particles.position[i], &mut self.images[i]);
     }
 
     /// Position of particle `i` on the path it took through the periodic images.
@@ -269,5 +280,13 @@ impl<const D: usize> System<D> {
             return None;
         }
         (0..self.particles.len()).find(|&i| !(self.particles.position[i].is_finite() && self.particles.velocity[i].is_finite()))
+    }
+
+    /// Whether all positions and velocities, those at `time`, are numbers.
+    pub(crate) fn check(&mut self, time: f64) -> Result<(), Failure> {
+        self.first_lost().map_or(Ok(()), |i| {
+            let cause = "position or velocity is no longer a number: a force overflowed; use a smaller dt".to_owned();
+            Err(Failure { time, particle: Some(i), cause })
+        })
     }
 }

@@ -61,6 +61,28 @@ fn whole_runs_do_not_depend_on_the_neighbour_list() {
     assert_eq!(tight, run(50.0));
 }
 
+/// Large enough for every pass over the particles to be shared among threads; long enough to build lists more than once, and to
+/// cross faces.
+#[test]
+fn whole_runs_do_not_depend_on_the_number_of_threads_nor_on_stops() {
+    let count = 30_000;
+    let run = |threads: usize, stops: u32| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let mut engine = fluid::<2>(count, 0.7, Box::new(PairForce::new(LENNARD_JONES)), 0.004, 6);
+            for stop in 1..=stops {
+                engine.advance(0.24 * f64::from(stop) / f64::from(stops), &mut ()).unwrap();
+            }
+            let images: Vec<_> = (0..count).map(|i| engine.images(i)).collect();
+            (engine.snapshot(), images, engine.energy())
+        })
+    };
+    let alone = run(1, 1);
+    assert!(alone.1.iter().any(|images| *images != [0; 2]));
+    assert!(run(3, 1) == alone, "threads");
+    assert!(run(2, 7) == alone, "stops");
+}
+
 /// A bound pair that drifts through the faces of a periodic box moves as in open space. Every step rounds positions and
 /// forces; in a bound orbit such errors grow in proportion to time, so that `n` steps leave `n^2` roundings at worst.
 #[test]

@@ -4,7 +4,7 @@ use corpuscle_core::{Axis, Boundary, Invalid, Particles, Vector};
 use rayon::prelude::*;
 
 use super::{Force, Tensor, add_product, finite, massive};
-use crate::instructions::{Instructions, Kernel};
+use corpuscle_core::instructions::{Instructions, Kernel};
 
 /// Charges that are acted on together.
 const LANES: usize = 8;

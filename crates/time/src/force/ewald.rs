@@ -10,7 +10,7 @@ use corpuscle_core::{Axis, Boundary, Invalid, Particles, Vector};
 use super::coulomb;
 use super::screened_charge::ScreenedCharge;
 use super::{Force, PairForce, Tensor, positive};
-use crate::instructions::Instructions;
+use corpuscle_core::instructions::Instructions;
 use plan::{Plan, Splitting};
 use waves::Waves;
 

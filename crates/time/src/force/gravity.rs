@@ -1,6 +1,6 @@
 //! Newton's gravity between all masses, and of the masses on grains.
 
-use corpuscle_core::{Axis, Boundary, Invalid, Particles, Vector};
+use corpuscle_core::{Axis, Boundary, Instructions, Invalid, Particles, Vector};
 
 mod direct;
 mod few;
@@ -10,7 +10,6 @@ mod scale;
 mod tree;
 
 use super::{Force, Tensor, add_product, finite, not_negative};
-use crate::instructions::Instructions;
 use direct::Masses;
 use grains::attract_grains;
 use scale::Scale;

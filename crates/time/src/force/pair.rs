@@ -3,15 +3,16 @@
 mod kernel;
 mod tensor;
 
-use corpuscle_core::{Axis, Boundary, Invalid, Particles, Vector};
+use corpuscle_core::{Axis, Boundary, Instructions, Invalid, Particles, Vector};
 use rayon::prelude::*;
 
 use super::{Force, Tensor, massive, positive};
-use crate::exact::{BITS, Quantum};
+use crate::exact::Quantum;
 use crate::image::NearestImage;
-use crate::instructions::Instructions;
-use crate::neighbours::{Blocks, LANES, Neighbours, Share};
-use kernel::{AddEnergies, AddForces, Forces, Law, NONE, Pairs, Sums, Table, Uniform};
+use crate::lanes;
+use crate::neighbours::{Blocks, Neighbours, Rows};
+use crate::threads::{self, CHUNK};
+use kernel::{AddEnergies, AddForces, Law, Pairs, Table, Totals, Uniform};
 
 /// How far typical pairs are below the bound of the sums' quantum: forces up to `2^14` times energy over length and energies
 /// up to `2^14` times the energy are still summed with the finest one.
@@ -64,8 +65,8 @@ pub struct PairForce<P, const D: usize> {
     shifted: bool,
     neighbours: Neighbours<D>,
     instructions: Instructions,
-    /// One array a share of the list.
-    force: Vec<Vec<Forces<D, 1>>>,
+    /// Of each place in the list's order.
+    force: Vec<[f64; D]>,
     quantum: Quantum,
 }
 
@@ -112,60 +113,61 @@ impl<P: PairPotential, const D: usize> PairForce<P, D> {
         &self.neighbours
     }
 
-    /// Adds the accelerations by the forces of all pairs, which `force` gathers.
+    /// Adds the accelerations by the forces of all pairs.
     fn add_accelerations<const LEVELS: usize>(
         &mut self,
         boundary: &Boundary<D>,
         particles: &Particles<D>,
-        force: &mut Vec<Vec<Forces<D, LEVELS>>>,
         acceleration: &mut [Vector<D>],
     ) {
         self.neighbours.update(boundary, &particles.position);
+        let mut force = std::mem::take(&mut self.force);
+        force.resize(self.neighbours.blocks.position.len(), [0.0; D]);
         let bound = if let [potential] = self.table[..] {
-            self.add_forces(Uniform(potential), boundary, force)
+            self.find_forces::<_, LEVELS>(Uniform(potential), boundary, &mut force)
         } else {
             self.neighbours.blocks.load_species(&particles.species);
             let (table, species) = (self.table.clone(), self.species);
-            self.add_forces(Table(&table, species), boundary, force)
+            self.find_forces::<_, LEVELS>(Table(&table, species), boundary, &mut force)
         };
-        if !bound.is_finite() {
+        if bound.is_finite() {
+            let (mass, place) = (&particles.mass, &self.neighbours.blocks.place);
+            let one = |((acceleration, mass), place): ((&mut [Vector<D>], &[f64]), &[u32])| {
+                for ((a, &mass), &place) in acceleration.iter_mut().zip(mass).zip(place) {
+                    *a += Vector(force[place as usize]) * (1.0 / mass);
+                }
+            };
+            if threads::are_worth_it(mass.len()) {
+                let chunks = acceleration.par_chunks_mut(CHUNK).zip(mass.par_chunks(CHUNK)).zip(place.par_chunks(CHUNK));
+                chunks.for_each(one);
+            } else {
+                one(((acceleration, mass), place));
+            }
+        } else {
             for i in self.lost(boundary, particles) {
                 acceleration[i] = Vector([f64::NAN; D]);
             }
-            return;
         }
-        let unit = if LEVELS == 1 { self.quantum.unit() } else { self.quantum.finer().unit() };
-        let place = &self.neighbours.blocks.place;
-        for ((a, &mass), &place) in acceleration.iter_mut().zip(&particles.mass).zip(place) {
-            let (block, lane) = (place as usize / LANES, place as usize % LANES);
-            let scale = unit / mass;
-            for k in 0..D {
-                let sum = |level: usize| force.iter().fold(0i64, |sum, force| sum.wrapping_add(force[block][level][k][lane]));
-                a[k] +=
-                    scale * if LEVELS == 1 { sum(0) as f64 } else { ((i128::from(sum(0)) << BITS) + i128::from(sum(1))) as f64 };
-            }
-        }
+        self.force = force;
     }
 
-    /// Sums the forces of all pairs, with the quantum that suits the largest of them; returns the bound of all forces.
-    fn add_forces<L: Law, const LEVELS: usize>(
-        &mut self,
-        law: L,
-        boundary: &Boundary<D>,
-        force: &mut Vec<Vec<Forces<D, LEVELS>>>,
-    ) -> f64 {
+    /// Sums the forces on every place, with the quantum that suits the largest of them; returns the bound of all forces.
+    fn find_forces<L: Law, const LEVELS: usize>(&mut self, law: L, boundary: &Boundary<D>, force: &mut [[f64; D]]) -> f64 {
         let cutoff = largest(&self.table, P::cutoff);
         let finest = finest(&self.table, |potential| potential.depth() / potential.length());
         let (blocks, shares) = (&self.neighbours.blocks, &self.neighbours.shares);
-        force.resize_with(shares.len(), Vec::new);
+        let places = self.neighbours.places_a_share();
         loop {
-            let one = |(force, share): (&mut Vec<Forces<D, LEVELS>>, &Share)| {
-                force.clear();
-                force.resize(blocks.position.len(), [[NONE; D]; LEVELS]);
-                let pairs = self.pairs(law, boundary, blocks, share);
-                self.instructions.run(AddForces { pairs, quanta: [self.quantum, self.quantum.finer()], force })
+            let quanta = [self.quantum, self.quantum.finer()];
+            let one = |(force, rows): (&mut [[f64; D]], &Rows)| {
+                let pairs = Self::pairs(law, boundary, blocks, rows);
+                lanes::run(self.instructions, AddForces::<L, D, LEVELS> { pairs, quanta, force })
             };
-            let scale = force.par_iter_mut().zip(shares).map(one).reduce(|| 0.0, larger);
+            let scale = if shares.len() == 1 {
+                one((force, &shares[0]))
+            } else {
+                force.par_chunks_mut(places).zip(shares).map(one).reduce(|| 0.0, larger)
+            };
             // The last quantum is only a guess, which saves time where it is right: the bits follow from the largest force.
             let quantum = finest.coarsened(scale * cutoff);
             if quantum == self.quantum {
@@ -175,8 +177,8 @@ impl<P: PairPotential, const D: usize> PairForce<P, D> {
         }
     }
 
-    fn pairs<'a, L>(&self, law: L, boundary: &Boundary<D>, blocks: &'a Blocks<D>, share: &'a Share) -> Pairs<'a, L, D> {
-        Pairs { law, image: NearestImage::new(boundary), blocks, share, shifted: self.shifted }
+    fn pairs<'a, L>(law: L, boundary: &Boundary<D>, blocks: &'a Blocks<D>, rows: &'a Rows) -> Pairs<'a, L, D> {
+        Pairs { law, image: NearestImage::new(boundary), blocks, rows }
     }
 
     /// Energy and virial.
@@ -190,26 +192,28 @@ impl<P: PairPotential, const D: usize> PairForce<P, D> {
         };
         blocks.load_species(&particles.species);
         let finest = finest(&self.table, P::depth);
+        let (instructions, shifted) = (self.instructions, self.shifted);
         let mut quanta = [finest; 2];
         loop {
-            let one = |share| -> Sums {
+            let one = |rows| -> Totals {
                 let quanta = quanta.map(|quantum| [quantum, quantum.finer()]);
                 if let [potential] = self.table[..] {
-                    let pairs = self.pairs(Uniform(potential), boundary, &blocks, share);
-                    self.instructions.run(AddEnergies { pairs, quanta })
+                    let pairs = Self::pairs(Uniform(potential), boundary, &blocks, rows);
+                    lanes::run(instructions, AddEnergies { pairs, quanta, shifted })
                 } else {
-                    let pairs = self.pairs(Table(&self.table, self.species), boundary, &blocks, share);
-                    self.instructions.run(AddEnergies { pairs, quanta })
+                    let pairs = Self::pairs(Table(&self.table, self.species), boundary, &blocks, rows);
+                    lanes::run(instructions, AddEnergies { pairs, quanta, shifted })
                 }
             };
-            let parts: Vec<Sums> = shares.par_iter().map(one).collect();
+            let parts: Vec<Totals> = shares.par_iter().map(one).collect();
             let bounds = [0, 1].map(|number| parts.iter().map(|part| part.largest[number]).fold(0.0, larger));
             if !bounds.iter().all(|bound| bound.is_finite()) {
                 return bounds;
             }
             let needed = bounds.map(|bound| finest.coarsened(bound));
             if needed == quanta {
-                let sum = |number: usize| parts.iter().map(|part| part.total[number]).sum::<i128>() as f64;
+                // Both sides of a pair have the same energy, bit by bit: half of the sum is a whole number of quanta.
+                let sum = |number: usize| (parts.iter().map(|part| part.total[number]).sum::<i128>() / 2) as f64;
                 return [0, 1].map(|number| sum(number) * quanta[number].finer().unit());
             }
             quanta = needed;
@@ -251,9 +255,7 @@ impl<P: PairPotential, const D: usize> Force<D> for PairForce<P, D> {
     }
 
     fn accelerate(&mut self, _: f64, boundary: &Boundary<D>, particles: &Particles<D>, acceleration: &mut [Vector<D>]) {
-        let mut force = std::mem::take(&mut self.force);
-        self.add_accelerations(boundary, particles, &mut force, acceleration);
-        self.force = force;
+        self.add_accelerations::<1>(boundary, particles, acceleration);
     }
 
     fn accelerate_precisely(
@@ -264,7 +266,7 @@ impl<P: PairPotential, const D: usize> Force<D> for PairForce<P, D> {
         _: &[Vector<D>],
         acceleration: &mut [Vector<D>],
     ) {
-        self.add_accelerations::<2>(boundary, particles, &mut vec![], acceleration);
+        self.add_accelerations::<2>(boundary, particles, acceleration);
     }
 
     fn energy(&self, _: f64, boundary: &Boundary<D>, particles: &Particles<D>) -> f64 {
@@ -310,130 +312,4 @@ impl<P: PairPotential, const D: usize> Force<D> for PairForce<P, D> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::force::{LennardJones, WeeksChandlerAndersen};
-    use corpuscle_core::Random;
-    use proptest::prelude::*;
-
-    fn gas<const D: usize>(axes: [Axis; D], side: f64, count: usize, seed: u64) -> (Boundary<D>, Particles<D>) {
-        let mut boundary = Boundary::new([-1.0; D], [side - 1.0; D], Axis::Open);
-        boundary.axes = axes;
-        let mut random = Random::new(seed, 0);
-        let mut particles = Particles::new();
-        for _ in 0..count {
-            let place = Vector::from_fn(|k| boundary.lower[k] + side * random.uniform());
-            particles.push(place, Vector::ZERO, 1.0 + random.uniform(), 0.0, 0);
-        }
-        (boundary, particles)
-    }
-
-    fn accelerations<const D: usize>(
-        force: &mut PairForce<impl PairPotential, D>,
-        boundary: &Boundary<D>,
-        particles: &Particles<D>,
-    ) -> Vec<Vector<D>> {
-        let mut acceleration = vec![Vector::ZERO; particles.len()];
-        force.accelerate(0.0, boundary, particles, &mut acceleration);
-        acceleration
-    }
-
-    /// Against a scan over all pairs that adds in quanta of its own; random places overlap, so forces are of any size.
-    fn check<const D: usize>(axes: [Axis; D], side: f64, count: usize, seed: u64) {
-        let (boundary, mut particles) = gas(axes, side, count, seed);
-        let potential = WeeksChandlerAndersen::new(1.0, 0.9);
-        let mut force = PairForce::new(potential);
-        let mut random = Random::new(seed, 1);
-        for _ in 0..3 {
-            let found = accelerations(&mut force, &boundary, &particles);
-            let mut expected = vec![Vector::<D>::ZERO; count];
-            let mut size = vec![0.0; count];
-            for i in 0..count {
-                for j in (0..count).filter(|&j| j != i) {
-                    let arrow = boundary.displacement(particles.position[i], particles.position[j]);
-                    if arrow.norm_squared() < potential.cutoff() * potential.cutoff() {
-                        let f = arrow * -potential.force_over_distance(arrow.norm_squared());
-                        expected[i] += f * (1.0 / particles.mass[i]);
-                        size[i] += f.norm();
-                    }
-                }
-            }
-            // A pair's force is off by half a quantum, and by the rounding of a power 14 of the distance.
-            let bound = |i: usize| size[i] * 100.0 * f64::EPSILON + count as f64 * force.quantum.unit() * 2.0;
-            for i in 0..count {
-                assert!((found[i] - expected[i]).norm() <= bound(i), "{i}: {:?} against {:?}", found[i], expected[i]);
-            }
-            // A little further on the list still holds; or it must notice that it does not.
-            particles.position.iter_mut().for_each(|r| {
-                *r = boundary.wrap(*r + Vector::from_fn(|_| 0.06 * (random.uniform() - 0.5)));
-            });
-        }
-    }
-
-    fn axis() -> impl Strategy<Value = Axis> {
-        prop_oneof![Just(Axis::Periodic), Just(Axis::Walls), Just(Axis::Open)]
-    }
-
-    proptest! {
-        #[test]
-        fn forces_are_what_a_scan_over_all_pairs_finds(
-            axes in prop::array::uniform3(axis()), side in 2.1..9.0f64, count in 1..150usize, seed in any::<u64>()
-        ) {
-            check([axes[0], axes[1]], side, count, seed);
-            check(axes, side, count, seed);
-            check([axes[0]], side, count.min(12), seed);
-        }
-    }
-
-    #[test]
-    fn bits_depend_neither_on_the_instruction_set_nor_on_the_number_of_threads() {
-        let (boundary, mut particles) = gas([Axis::Periodic; 3], 16.0, 4096, 3);
-        for (i, r) in particles.position.iter_mut().enumerate() {
-            *r = *r * 0.02 + Vector::from_fn(|k| (i / 16usize.pow(k as u32) % 16) as f64 - 0.9);
-        }
-        let run = |instructions, threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| {
-                let mut force = PairForce::<_, 3>::new(LennardJones { epsilon: 1.0, sigma: 1.0, cutoff: 2.5 });
-                force.instructions = instructions;
-                let accelerations = accelerations(&mut force, &boundary, &particles);
-                assert_eq!(force.force.len(), threads);
-                (accelerations, force.energy(0.0, &boundary, &particles), force.virial(0.0, &boundary, &particles))
-            })
-        };
-        let plain = run(Instructions::Plain, 1);
-        for instructions in Instructions::all() {
-            for threads in [1, 2, 5] {
-                assert!(run(instructions, threads) == plain, "{instructions:?} {threads}");
-            }
-        }
-        let mut precise = vec![Vector::ZERO; particles.len()];
-        let mut force = PairForce::<_, 3>::new(LennardJones { epsilon: 1.0, sigma: 1.0, cutoff: 2.5 });
-        force.accelerate_precisely(0.0, &boundary, &particles, &[], &mut precise);
-        let off = precise.iter().zip(&plain.0).map(|(a, b)| (*a - *b).norm()).fold(0.0, f64::max);
-        assert!(off > 0.0 && off < 100.0 * force.quantum.unit(), "{off:e}");
-    }
-
-    #[test]
-    fn the_forces_of_a_closed_system_add_up_to_nothing() {
-        let (boundary, mut particles) = gas([Axis::Periodic; 2], 30.0, 500, 1);
-        particles.mass.fill(1.0);
-        let mut force = PairForce::<_, 2>::new(WeeksChandlerAndersen::new(1.0, 1.0));
-        let accelerations = accelerations(&mut force, &boundary, &particles);
-        // Unit masses: accelerations are multiples of the quantum, whose sum in quanta is exact.
-        let unit = force.quantum.unit();
-        for k in 0..2 {
-            assert_eq!(accelerations.iter().map(|a| (a[k] / unit) as i128).sum::<i128>(), 0);
-        }
-    }
-
-    #[test]
-    fn two_particles_at_one_place_are_named_as_lost() {
-        let (boundary, mut particles) = gas([Axis::Open; 2], 30.0, 9, 1);
-        particles.position[7] = particles.position[2];
-        let mut force = PairForce::<_, 2>::new(WeeksChandlerAndersen::new(1.0, 1.0));
-        let accelerations = accelerations(&mut force, &boundary, &particles);
-        let lost: Vec<usize> = (0..9).filter(|&i| !accelerations[i].is_finite()).collect();
-        assert_eq!(lost, [2, 7]);
-    }
-}
+mod tests;

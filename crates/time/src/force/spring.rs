@@ -1,12 +1,11 @@
 //! Springs between pairs of particles: chains, membranes, arbitrary networks.
 
-use corpuscle_core::{Axis, Boundary, Invalid, Particles, Vector};
+use corpuscle_core::{Axis, Boundary, Instructions, Invalid, Particles, Vector};
 
 mod run;
 
 use super::{Force, Tensor, add_product, finite, massive, not_negative};
 use crate::image::NearestImage;
-use crate::instructions::Instructions;
 use run::{Run, Stretch};
 
 /// A spring, with a dashpot beside it.
@@ -119,13 +118,13 @@ impl<const D: usize> Force<D> for Springs {
 
     fn accelerate(&mut self, _: f64, boundary: &Boundary<D>, particles: &Particles<D>, acceleration: &mut [Vector<D>]) {
         let image = NearestImage::new(boundary);
-        let open = boundary.axes.iter().all(|&axis| axis != Axis::Periodic);
-        let Particles { position, velocity, mass, .. } = particles;
+        let periodic = boundary.axes.contains(&Axis::Periodic).then_some(image);
         for run in &self.runs {
-            if open && run.is_linear() {
-                self.instructions.run(Stretch { run, position, mass, acceleration });
+            if !run.is_short() {
+                self.instructions.run(Stretch { run, image: periodic, particles, acceleration });
                 continue;
             }
+            let Particles { position, velocity, mass, .. } = particles;
             for spring in run.springs() {
                 let r = image.displacement(position[spring.first], position[spring.second]);
                 let mut force = spring.elastic(r);

@@ -83,7 +83,7 @@ const fn compose<const LENGTHS: usize, const STAGES: usize>(lengths: [f64; LENGT
     stages
 }
 
-/// One step. The acceleration of the last kick serves the first of the next step.
+/// One step. The acceleration of the last kick serves the first of the next step, which does both.
 pub(crate) fn step<const D: usize>(
     stages: &Composition,
     system: &mut System<D>,
@@ -97,10 +97,12 @@ pub(crate) fn step<const D: usize>(
         system.accelerate(time, (drifted - kicked) * dt);
         kicked += stage.kick;
         if stage.drift == 0.0 {
-            system.kick(stage.kick * dt);
+            system.owe_kick(stage.kick * dt);
             continue;
         }
-        system.kick_and_drift(stage.kick * dt, stage.drift * dt);
+        if !system.kick_and_drift(stage.kick * dt, stage.drift * dt) {
+            system.check(start)?;
+        }
         drifted += stage.drift;
         let last = stages[number + 1..].iter().all(|stage| stage.drift == 0.0);
         time = if last { end } else { start + drifted * dt };

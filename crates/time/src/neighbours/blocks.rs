@@ -3,35 +3,9 @@
 use corpuscle_core::{Axis, Boundary, Vector};
 
 use crate::image::NearestImage;
+use crate::lanes::{InLanes, LANES, Lanes};
 
-/// Particles in a block.
-pub(crate) const LANES: usize = 4;
-
-/// One number of each particle of a block, aligned as vector instructions like it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C, align(32))]
-pub(crate) struct Lanes<T>(pub(crate) [T; LANES]);
-
-impl<T> std::ops::Index<usize> for Lanes<T> {
-    type Output = T;
-
-    #[inline(always)]
-    fn index(&self, lane: usize) -> &T {
-        &self.0[lane]
-    }
-}
-
-impl<T> std::ops::IndexMut<usize> for Lanes<T> {
-    #[inline(always)]
-    fn index_mut(&mut self, lane: usize) -> &mut T {
-        &mut self.0[lane]
-    }
-}
-
-/// Where the first place without a particle lies, and how far they are from one another: out of reach of everything, for the
-/// square is infinite.
-const NOWHERE: f64 = 1e200;
-/// What stands in for a particle's index at such places.
+/// What stands in for a particle's index at places without one.
 pub(crate) const NOBODY: u32 = u32::MAX;
 
 /// Positions in blocks of [`LANES`] particles that are near each other.
@@ -40,10 +14,10 @@ pub(crate) const NOBODY: u32 = u32::MAX;
 /// sorted along it and cut into blocks (Pall and Hess 2013, doi:10.1016/j.cpc.2013.06.003).
 #[derive(Clone, Debug)]
 pub(crate) struct Blocks<const D: usize> {
-    /// Positions, block after block.
-    pub(crate) position: Vec<[Lanes<f64>; D]>,
-    /// Species, block after block.
-    pub(crate) species: Vec<[u16; LANES]>,
+    /// Position at each place; no number where there is no particle, the last places of a block.
+    pub(crate) position: Vec<[f64; D]>,
+    /// Species at each place.
+    pub(crate) species: Vec<u16>,
     /// Index of the particle at each place; [`NOBODY`] where there is none.
     pub(crate) particle: Vec<u32>,
     /// Place of each particle.
@@ -104,18 +78,10 @@ impl<const D: usize> Columns<D> {
         })
     }
 
-    /// Calls `visit` once with every column, numbered `first` or higher, that comes within `reach` of the region from `low`
-    /// to `high`: with its number, whether the way there leads through a periodic face, and how far its blocks may be from
-    /// the region along the last axis, squared.
+    /// Calls `visit` once with every column that comes within `reach` of the region from `low` to `high`: with its number, and how far its blocks may be from the region along the
+    /// last axis, squared.
     #[inline(always)]
-    pub(crate) fn for_each_near(
-        &self,
-        low: &[f64; D],
-        high: &[f64; D],
-        reach: f64,
-        first: usize,
-        mut visit: impl FnMut(usize, bool, f64),
-    ) {
+    pub(crate) fn for_each_near(&self, low: &[f64; D], high: &[f64; D], reach: f64, mut visit: impl FnMut(usize, f64)) {
         // Slots along each axis: from where, and how many; in a ring smaller than the region, each once.
         let (mut from, mut span, mut all) = ([0i64; D], [1i64; D], [false; D]);
         for k in 0..D - 1 {
@@ -129,11 +95,10 @@ impl<const D: usize> Columns<D> {
             (from[k], span[k]) = if all[k] { (0, count) } else { (start, end - start + 1) };
         }
         for mut number in 0..span.iter().product() {
-            let (mut column, mut stride, mut wrapped, mut room) = (0, 1, false, reach * reach);
+            let (mut column, mut stride, mut room) = (0, 1, reach * reach);
             for k in 0..D - 1 {
                 let (count, slot) = (self.counts[k] as i64, from[k] + number % span[k]);
                 number /= span[k];
-                wrapped |= all[k] || !(0..count).contains(&slot);
                 column += slot.rem_euclid(count) * stride;
                 stride *= count;
                 if !all[k] {
@@ -145,8 +110,8 @@ impl<const D: usize> Columns<D> {
                     room -= gap * gap;
                 }
             }
-            if column as usize >= first && room > 0.0 {
-                visit(column as usize, wrapped, room);
+            if room > 0.0 {
+                visit(column as usize, room);
             }
         }
     }
@@ -191,75 +156,91 @@ impl<const D: usize> Blocks<D> {
                 place[i as usize] = number as u32;
             }
         }
-        let nowhere = |block: usize| Lanes(std::array::from_fn(|lane| NOWHERE * (1 + block * LANES + lane) as f64));
-        let position = (0..particle.len() / LANES).map(|block| [nowhere(block); D]).collect();
-        let species = vec![[0; LANES]; particle.len() / LANES];
-        let mut blocks = Self { position, species, particle, place, columns };
+        let position = vec![[f64::NAN; D]; particle.len()];
+        let mut blocks = Self { position, species: vec![0; particle.len()], particle, place, columns };
         blocks.load(places);
         blocks
     }
 
+    /// Number of blocks.
+    pub(crate) fn count(&self) -> usize {
+        self.position.len() / LANES
+    }
+
     /// Takes over positions, in the present order.
     pub(crate) fn load(&mut self, position: &[Vector<D>]) {
-        for (block, particles) in self.position.iter_mut().zip(self.particle.chunks_exact(LANES)) {
-            for (lane, &i) in particles.iter().enumerate() {
-                if i != NOBODY {
-                    let r = position[i as usize];
-                    for k in 0..D {
-                        block[k][lane] = r[k];
-                    }
-                }
-            }
-        }
+        take_over(&mut self.position, &self.particle, position);
     }
 
     /// Takes over species.
     pub(crate) fn load_species(&mut self, species: &[u16]) {
-        for (block, particles) in self.species.iter_mut().zip(self.particle.chunks_exact(LANES)) {
-            for (kind, &i) in block.iter_mut().zip(particles).filter(|(_, i)| **i != NOBODY) {
-                *kind = species[i as usize];
+        for (kind, &i) in self.species.iter_mut().zip(&self.particle) {
+            if let Some(&species) = species.get(i as usize) {
+                *kind = species;
             }
         }
     }
 
     /// Lower and upper corner of a block's box.
     pub(crate) fn bounds(&self, block: usize) -> ([f64; D], [f64; D]) {
-        let real = |lane: &usize| self.particle[block * LANES + lane] != NOBODY;
-        let lanes = (0..LANES).filter(real).count();
-        let axis = |k: usize| {
-            let x = &self.position[block][k].0[..lanes]; // places without a particle are the last ones
-            let low = x.iter().fold(f64::INFINITY, |a, &b| a.min(b));
-            let high = x.iter().fold(f64::NEG_INFINITY, |a, &b| a.max(b));
-            (low, high)
-        };
-        (std::array::from_fn(|k| axis(k).0), std::array::from_fn(|k| axis(k).1))
+        let places = &self.position[block * LANES..(block + 1) * LANES];
+        // Places without a particle hold no number, which is neither smaller nor larger than one.
+        let bound = |k: usize, start: f64, choose: fn(f64, f64) -> f64| places.iter().map(|r| r[k]).fold(start, choose);
+        (std::array::from_fn(|k| bound(k, f64::INFINITY, f64::min)), std::array::from_fn(|k| bound(k, f64::NEG_INFINITY, f64::max)))
     }
 }
 
-/// The two largest squares of displacements from `before` to `now`, nearest images.
-#[inline(always)]
-pub(crate) fn largest_moves<const D: usize>(
-    image: &NearestImage<D>,
-    before: &[[Lanes<f64>; D]],
-    now: &[[Lanes<f64>; D]],
-) -> [f64; 2] {
-    let mut first = [0.0; LANES];
-    let mut second = [0.0; LANES];
-    for (before, now) in before.iter().zip(now) {
-        let mut moved = [0.0; LANES];
-        for k in 0..D {
-            for lane in 0..LANES {
-                let d = image.component(k, now[k][lane] - before[k][lane]);
-                moved[lane] += d * d;
-            }
-        }
-        for lane in 0..LANES {
-            let smaller = if moved[lane] > first[lane] { first[lane] } else { moved[lane] };
-            first[lane] = if moved[lane] > first[lane] { moved[lane] } else { first[lane] };
-            second[lane] = if smaller > second[lane] { smaller } else { second[lane] };
+/// Positions at places, from those of the particles there.
+pub(crate) fn take_over<const D: usize>(places: &mut [[f64; D]], particle: &[u32], position: &[Vector<D>]) {
+    for (here, &i) in places.iter_mut().zip(particle) {
+        if let Some(r) = position.get(i as usize) {
+            *here = r.0;
         }
     }
-    let mut all: Vec<f64> = first.into_iter().chain(second).collect();
-    all.sort_unstable_by(f64::total_cmp);
-    [all[2 * LANES - 1], all[2 * LANES - 2]]
+}
+
+/// The two largest squares of displacements from `before` to `now`, nearest images, among places of whole blocks.
+pub(crate) struct LargestMoves<'a, const D: usize> {
+    pub(crate) image: NearestImage<D>,
+    pub(crate) before: &'a [[f64; D]],
+    pub(crate) now: &'a [[f64; D]],
+}
+
+impl<const D: usize> InLanes for LargestMoves<'_, D> {
+    type Output = [f64; 2];
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) -> [f64; 2] {
+        let image = self.image.in_lanes::<V>();
+        let zero = V::splat(0.0);
+        let (mut first, mut second) = (zero, zero);
+        for (before, now) in self.before.chunks_exact(LANES).zip(self.now.chunks_exact(LANES)) {
+            let mut d = [zero; D];
+            for k in 0..D {
+                d[k] = image.component(k, column::<V, D>(now, k).sub(column::<V, D>(before, k)));
+            }
+            let moved = norm_squared(&d).larger(zero); // places without a particle stay
+            second = second.larger(moved.smaller(first));
+            first = first.larger(moved);
+        }
+        let mut all: Vec<f64> = first.lanes().into_iter().chain(second.lanes()).collect();
+        all.sort_unstable_by(f64::total_cmp);
+        [all[2 * LANES - 1], all[2 * LANES - 2]]
+    }
+}
+
+/// Component `k` of the places of a block.
+#[inline(always)]
+pub(crate) fn column<V: Lanes, const D: usize>(places: &[[f64; D]], k: usize) -> V {
+    V::new([places[0][k], places[1][k], places[2][k], places[3][k]])
+}
+
+/// Squares of the lengths of four arrows.
+#[inline(always)]
+pub(crate) fn norm_squared<V: Lanes, const D: usize>(arrow: &[V; D]) -> V {
+    let mut sum = arrow[0].mul(arrow[0]);
+    for k in 1..D {
+        sum = sum.add(arrow[k].mul(arrow[k]));
+    }
+    sum
 }

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use super::plan::Plan;
 use crate::force::{Tensor, add_product};
-use crate::instructions::{Instructions, Kernel};
+use corpuscle_core::instructions::{Instructions, Kernel};
 
 /// Particles whose phases are computed together.
 const LANES: usize = 8;

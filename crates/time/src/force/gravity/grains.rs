@@ -1,11 +1,11 @@
 //! The pull of masses on massless grains.
 
+use corpuscle_core::instructions::{Instructions, Kernel};
 use corpuscle_core::{Particles, Vector};
 use rayon::prelude::*;
 
 use super::lanes::{guess, inverse_cube_of_root};
 use super::scale::Scale;
-use crate::instructions::{Instructions, Kernel};
 
 /// Grains handled by one thread at a time.
 const BLOCK: usize = 256;
@@ -88,7 +88,7 @@ impl<const D: usize> Kernel for Attraction<'_, D> {
                 }
             }
             // A mass among the grains has met itself: its pull is no number.
-            if mass.iter().all(|&mass| mass == 0.0) {
+            if mass.iter().fold(0, |bits, mass| bits | mass.to_bits()) == 0 {
                 for (i, a) in acceleration.iter_mut().enumerate() {
                     *a += Vector::from_fn(|k| pulls[k][i]);
                 }

@@ -1,9 +1,9 @@
 //! Units of length in which squares of distances fit single precision.
 
 use corpuscle_core::Vector;
+use corpuscle_core::instructions::{Instructions, Kernel};
 
 use super::lanes::LANES;
-use crate::instructions::{Instructions, Kernel};
 
 /// A power of two by which lengths are multiplied: the largest coordinate becomes about `2^60`, and distances down to `2^-123`
 /// of it count. Powers of two round nothing, so results do not depend on the choice.

@@ -1,7 +1,6 @@
-use corpuscle_core::{Axis, Boundary, Particles, Random, Vector};
+use corpuscle_core::{Axis, Boundary, Instructions, Particles, Random, Vector};
 
 use super::*;
-use crate::instructions::Instructions;
 
 fn cloud<const D: usize>(masses: usize, grains: usize) -> Particles<D> {
     let mut random = Random::new(5, 0);
@@ -67,7 +66,7 @@ fn bits_depend_neither_on_the_instruction_set_nor_on_threads() {
             let mut force = Gravity { instructions, ..Gravity::new(1.0, 0.1) };
             accelerations(&mut force, &particles, remainder)
         };
-        let plain = run(Instructions::Plain);
+        let plain = run(Instructions::PLAIN);
         for instructions in Instructions::all() {
             for threads in [1, 2, 3] {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

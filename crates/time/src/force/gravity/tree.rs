@@ -3,13 +3,12 @@
 mod build;
 mod pull;
 
-use corpuscle_core::{Boundary, Invalid, Particles, Vector};
+use corpuscle_core::{Boundary, Instructions, Invalid, Particles, Vector};
 use rayon::prelude::*;
 
 use super::scale::Scale;
 use super::validate;
 use crate::force::Force;
-use crate::instructions::Instructions;
 use build::Tree;
 use pull::{Bodies, Cells, Lists, OfBodies, OfCells, Pull};
 

@@ -1,24 +1,17 @@
-//! The sums over pairs: forces, energy and virial, a particle against a block of others at a time.
-
-// A condition without `&&` is a mask; what a kernel accumulates stays apart so that it stays in registers.
-#![allow(clippy::needless_bitwise_bool, clippy::too_many_arguments)]
+//! The sums over pairs: forces, energy and virial, the four particles of a block against one other at a time.
 
 use crate::exact::{BITS, Quantum};
-use crate::image::NearestImage;
-use crate::instructions::Kernel;
-use crate::neighbours::{Blocks, LANES, Lanes, Rows, Share};
+use crate::image::{NearestImage, NearestImages};
+use crate::lanes::{InLanes, LANES, Lanes};
+use crate::neighbours::{ALL, Blocks, Image, NONE, Near, Rows, column, norm_squared};
 
 use super::PairPotential;
-
-/// Force on each particle of a block: in quanta and, on a second level, what that leaves in quanta of its own.
-pub(super) type Forces<const D: usize, const LEVELS: usize> = [[Lanes<i64>; D]; LEVELS];
-
-/// No force.
-pub(super) const NONE: Lanes<i64> = Lanes([0; LANES]);
 
 /// Which potential acts between two species.
 pub(super) trait Law: Copy + Sync {
     type Potential: PairPotential;
+    /// Whether species do not matter.
+    const UNIFORM: bool;
 
     fn between(self, species: u16, other: u16) -> Self::Potential;
 }
@@ -29,6 +22,7 @@ pub(super) struct Uniform<P>(pub(super) P);
 
 impl<P: PairPotential> Law for Uniform<P> {
     type Potential = P;
+    const UNIFORM: bool = true;
 
     #[inline(always)]
     fn between(self, _: u16, _: u16) -> P {
@@ -42,6 +36,7 @@ pub(super) struct Table<'a, P>(pub(super) &'a [P], pub(super) usize);
 
 impl<P: PairPotential> Law for Table<'_, P> {
     type Potential = P;
+    const UNIFORM: bool = false;
 
     #[inline(always)]
     fn between(self, species: u16, other: u16) -> P {
@@ -54,61 +49,264 @@ pub(super) struct Pairs<'a, L, const D: usize> {
     pub(super) law: L,
     pub(super) image: NearestImage<D>,
     pub(super) blocks: &'a Blocks<D>,
-    pub(super) share: &'a Share,
-    /// Whether energies are shifted to vanish at the range.
-    pub(super) shifted: bool,
+    pub(super) rows: &'a Rows,
 }
 
-/// In a block a particle meets only those in later lanes: every pair once.
-const LATER: [[bool; LANES]; LANES] = {
-    let mut later = [[false; LANES]; LANES];
-    let mut lane = 0;
-    while lane < LANES {
-        let mut other = lane + 1;
-        while other < LANES {
-            later[lane][other] = true;
-            other += 1;
-        }
-        lane += 1;
-    }
-    later
-};
+/// How many particles a block meets at once: a processor looks only so far ahead, and so it has something to do while it waits
+/// for a quotient.
+const TOGETHER: usize = 4;
 
-/// Vectors from `r` to the particles of a block, and their squares.
-#[inline(always)]
-fn arrows<const D: usize, const IMAGE: bool>(
-    image: &NearestImage<D>,
-    r: &[f64; D],
-    there: &[Lanes<f64>; D],
-) -> ([[f64; LANES]; D], [f64; LANES]) {
-    let mut arrow = [[0.0; LANES]; D];
-    let mut r_squared = [0.0; LANES];
-    for k in 0..D {
+/// The particles of a block, each against `N` others.
+struct Meeting<V, L, const D: usize, const N: usize> {
+    law: L,
+    own: [u16; LANES],
+    other: [[u16; LANES]; N],
+    /// From the others to the block's own.
+    arrow: [[V; D]; N],
+    r_squared: [V; N],
+}
+
+impl<V: Lanes, L: Law, const D: usize, const N: usize> Meeting<V, L, D, N> {
+    #[inline(always)]
+    fn new<const IMAGE: usize>(law: L, image: &NearestImages<V, D>, block: &Block<V, D>, there: &[[V; D]; N]) -> Self {
+        let mut meeting =
+            Self { law, own: block.species, other: [block.species; N], arrow: [block.r; N], r_squared: [block.r[0]; N] };
+        for n in 0..N {
+            for k in 0..D {
+                meeting.arrow[n][k] = block.r[k].sub(there[n][k]);
+                if IMAGE == ALL || IMAGE == k {
+                    meeting.arrow[n][k] = image.component(k, meeting.arrow[n][k]);
+                }
+            }
+            meeting.r_squared[n] = norm_squared(&meeting.arrow[n]);
+        }
+        meeting
+    }
+
+    #[inline(always)]
+    fn potential(&self, n: usize, lane: usize) -> L::Potential {
+        self.law.between(self.own[lane], self.other[n][lane])
+    }
+
+    /// `U'(r)/r` of four pairs, with the sign of a repulsion; zero beyond the range.
+    #[inline(always)]
+    fn force_over_distance(&self, n: usize) -> V {
+        let squares = self.r_squared[n].lanes();
+        let (mut force, mut range) = ([0.0; LANES], [0.0; LANES]);
         for lane in 0..LANES {
-            let d = there[k][lane] - r[k];
-            arrow[k][lane] = if IMAGE { image.component(k, d) } else { d };
-            r_squared[lane] += arrow[k][lane] * arrow[k][lane];
+            let potential = self.potential(n, lane);
+            force[lane] = potential.force_over_distance(squares[lane]);
+            range[lane] = potential.cutoff() * potential.cutoff();
+        }
+        V::new(force).where_less(self.r_squared[n], V::new(range))
+    }
+
+    /// `U(r)` of four pairs, less its value at the range if `shifted`; zero beyond the range.
+    #[inline(always)]
+    fn energy(&self, n: usize, shifted: bool) -> V {
+        let squares = self.r_squared[n].lanes();
+        let (mut energy, mut range) = ([0.0; LANES], [0.0; LANES]);
+        for lane in 0..LANES {
+            let potential = self.potential(n, lane);
+            range[lane] = potential.cutoff() * potential.cutoff();
+            energy[lane] = potential.energy(squares[lane]) - if shifted { potential.energy(range[lane]) } else { 0.0 };
+        }
+        V::new(energy).where_less(self.r_squared[n], V::new(range))
+    }
+}
+
+/// A sum over the pairs of a block.
+trait Sum<V: Lanes, const D: usize> {
+    /// Whether speed matters enough for code of their own for pairs in need of different images. What they do not need changes
+    /// no bit.
+    const HOT: bool;
+
+    fn add<L: Law, const N: usize>(&mut self, meeting: &Meeting<V, L, D, N>);
+}
+
+/// The particles of a block.
+struct Block<V, const D: usize> {
+    r: [V; D],
+    species: [u16; LANES],
+}
+
+impl<V: Lanes, const D: usize> Block<V, D> {
+    #[inline(always)]
+    fn new(blocks: &Blocks<D>, number: usize) -> Self {
+        let places = number * LANES..(number + 1) * LANES;
+        let (position, kinds) = (&blocks.position[places.clone()], &blocks.species[places]);
+        let mut r = [V::splat(0.0); D];
+        for k in 0..D {
+            r[k] = column::<V, D>(position, k);
+        }
+        Self { r, species: [kinds[0], kinds[1], kinds[2], kinds[3]] }
+    }
+
+    /// The block against particles near it.
+    #[inline(always)]
+    fn meet<L: Law, S: Sum<V, D>, const IMAGE: usize>(
+        &self,
+        pairs: &Pairs<'_, L, D>,
+        image: &NearestImages<V, D>,
+        places: &[u32],
+        sum: &mut S,
+    ) {
+        let (groups, rest) = if S::HOT { places.as_chunks::<TOGETHER>() } else { (&[][..], places) };
+        for group in groups {
+            self.meet_group::<L, S, IMAGE, TOGETHER>(pairs, image, group, sum);
+        }
+        for &place in rest {
+            self.meet_group::<L, S, IMAGE, 1>(pairs, image, &[place], sum);
         }
     }
-    (arrow, r_squared)
-}
 
-/// Which lanes of its own block a particle meets.
-#[inline(always)]
-fn later(lane: usize, own: bool) -> [bool; LANES] {
-    let mut later = LATER[lane];
-    for other in 0..LANES {
-        later[other] &= own;
+    #[inline(always)]
+    fn meet_group<L: Law, S: Sum<V, D>, const IMAGE: usize, const N: usize>(
+        &self,
+        pairs: &Pairs<'_, L, D>,
+        image: &NearestImages<V, D>,
+        places: &[u32; N],
+        sum: &mut S,
+    ) {
+        let mut there = [self.r; N];
+        for n in 0..N {
+            let position = &pairs.blocks.position[places[n] as usize];
+            for k in 0..D {
+                there[n][k] = V::splat(position[k]);
+            }
+        }
+        let mut meeting = Meeting::new::<IMAGE>(pairs.law, image, self, &there);
+        if !L::UNIFORM {
+            for n in 0..N {
+                meeting.other[n] = [pairs.blocks.species[places[n] as usize]; LANES];
+            }
+        }
+        sum.add(&meeting);
     }
-    later
+
+    /// Its particles against each other: each against the next, the one after that, and so on, counted round.
+    #[inline(always)]
+    fn meet_own<L: Law, const IMAGE: usize>(&self, law: L, image: &NearestImages<V, D>, sum: &mut impl Sum<V, D>) {
+        let mut there = [self.r; LANES - 1];
+        for k in 0..D {
+            there[0][k] = self.r[k].rotated::<1>();
+            there[1][k] = self.r[k].rotated::<2>();
+            there[2][k] = self.r[k].rotated::<3>();
+        }
+        let mut meeting = Meeting::new::<IMAGE>(law, image, self, &there);
+        for n in 0..LANES - 1 {
+            for lane in 0..LANES {
+                meeting.other[n][lane] = self.species[(lane + n + 1) % LANES];
+            }
+            for k in 0..D {
+                // Where the block has no particle, the arrow would be no number, even times nothing.
+                meeting.arrow[n][k] = meeting.arrow[n][k].where_less(meeting.r_squared[n], V::splat(f64::INFINITY));
+            }
+        }
+        sum.add(&meeting);
+    }
 }
 
-/// Keeps the larger of two magnitudes, as bits: not a number counts as larger than infinity.
+/// How many times four pairs [`add_up`] counts in a row.
+fn terms(near: &Near<'_>) -> i64 {
+    (LANES - 1 + near.count) as i64
+}
+
+/// Adds all pairs of a block to a sum.
 #[inline(always)]
-fn keep_largest(largest: &mut [i64; LANES], x: &[f64; LANES]) {
-    for lane in 0..LANES {
-        let bits = x[lane].abs().to_bits() as i64;
-        largest[lane] = if bits > largest[lane] { bits } else { largest[lane] };
+fn add_up<V: Lanes, L: Law, S: Sum<V, D>, const D: usize>(
+    pairs: &Pairs<'_, L, D>,
+    image: &NearestImages<V, D>,
+    block: usize,
+    near: &Near<'_>,
+    sum: &mut S,
+) {
+    let block = Block::<V, D>::new(pairs.blocks, block);
+    match near.own {
+        Image::None if S::HOT => block.meet_own::<L, NONE>(pairs.law, image, sum),
+        _ => block.meet_own::<L, ALL>(pairs.law, image, sum),
+    }
+    for (needed, places) in near.segments() {
+        match needed {
+            Image::None if S::HOT => block.meet::<L, S, NONE>(pairs, image, places, sum),
+            Image::Along(0) if S::HOT && D > 1 => block.meet::<L, S, 0>(pairs, image, places, sum),
+            Image::Along(1) if S::HOT && D > 1 => block.meet::<L, S, 1>(pairs, image, places, sum),
+            Image::Along(2) if S::HOT && D > 2 => block.meet::<L, S, 2>(pairs, image, places, sum),
+            _ => block.meet::<L, S, ALL>(pairs, image, places, sum),
+        }
+    }
+}
+
+/// Finds the force on every place of a share, and the largest `|U'(r)/r|`.
+pub(super) struct AddForces<'a, L, const D: usize, const LEVELS: usize> {
+    pub(super) pairs: Pairs<'a, L, D>,
+    /// Forces are rounded to the first; on a second level, what that leaves to the second.
+    pub(super) quanta: [Quantum; 2],
+    pub(super) force: &'a mut [[f64; D]],
+}
+
+/// Force on each particle of a block, as sums of bits.
+struct Forces<V: Lanes, const D: usize, const LEVELS: usize> {
+    magic: [V; 2],
+    bits: [[V::Integers; D]; LEVELS],
+    most: V::Integers,
+}
+
+impl<V: Lanes, const D: usize, const LEVELS: usize> Sum<V, D> for Forces<V, D, LEVELS> {
+    const HOT: bool = LEVELS == 1;
+
+    #[inline(always)]
+    fn add<L: Law, const N: usize>(&mut self, meeting: &Meeting<V, L, D, N>) {
+        let mut scale = [V::splat(0.0); N];
+        for n in 0..N {
+            scale[n] = meeting.force_over_distance(n);
+        }
+        for n in 0..N {
+            self.most = scale[n].larger_bits(self.most);
+            for k in 0..D {
+                let mut left = meeting.arrow[n][k].mul(scale[n]);
+                for level in 0..LEVELS {
+                    let shifted = left.add(self.magic[level]);
+                    self.bits[level][k] = shifted.add_bits(self.bits[level][k]);
+                    left = left.sub(shifted.sub(self.magic[level]));
+                }
+            }
+        }
+    }
+}
+
+impl<L: Law, const D: usize, const LEVELS: usize> InLanes for AddForces<'_, L, D, LEVELS> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) -> f64 {
+        let Self { pairs, quanta, force } = self;
+        let image = pairs.image.in_lanes::<V>();
+        let magic = [V::splat(quanta[0].magic()), V::splat(quanta[1].magic())];
+        let unit = quanta[LEVELS - 1].unit();
+        let mut most = V::zeros();
+        let rows = (pairs.rows.first..).zip(pairs.rows.iter());
+        for ((block, near), force) in rows.zip(force.chunks_exact_mut(LANES)) {
+            let mut sum = Forces::<V, D, LEVELS> { magic, bits: [[V::zeros(); D]; LEVELS], most };
+            add_up(&pairs, &image, block, &near, &mut sum);
+            most = sum.most;
+            let terms = terms(&near);
+            for k in 0..D {
+                let numbers = if LEVELS == 1 {
+                    V::numbers(sum.bits[0][k], quanta[0].bias(terms)).lanes()
+                } else {
+                    let (coarse, fine) = (V::integers(sum.bits[0][k]), V::integers(sum.bits[LEVELS - 1][k]));
+                    std::array::from_fn(|lane| {
+                        let coarse = i128::from(coarse[lane].wrapping_sub(quanta[0].bias(terms)));
+                        ((coarse << BITS) + i128::from(fine[lane].wrapping_sub(quanta[1].bias(terms)))) as f64
+                    })
+                };
+                for lane in 0..LANES {
+                    force[lane][k] = unit * numbers[lane];
+                }
+            }
+        }
+        largest_of(V::integers(most))
     }
 }
 
@@ -116,118 +314,8 @@ fn largest_of(bits: [i64; LANES]) -> f64 {
     f64::from_bits(bits.into_iter().max().unwrap_or(0) as u64)
 }
 
-/// Adds the force of every pair of a share; returns the largest `|U'(r)/r|`.
-pub(super) struct AddForces<'a, L, const D: usize, const LEVELS: usize> {
-    pub(super) pairs: Pairs<'a, L, D>,
-    pub(super) quanta: [Quantum; 2],
-    pub(super) force: &'a mut [Forces<D, LEVELS>],
-}
-
-impl<L: Law, const D: usize, const LEVELS: usize> Kernel for AddForces<'_, L, D, LEVELS> {
-    type Output = f64;
-
-    #[inline(always)]
-    fn run(self) -> f64 {
-        let mut largest = [0; LANES];
-        let share = self.pairs.share;
-        add_forces::<L, D, LEVELS, false>(&self.pairs, &share.direct, self.quanta, self.force, &mut largest);
-        add_forces::<L, D, LEVELS, true>(&self.pairs, &share.imaged, self.quanta, self.force, &mut largest);
-        largest_of(largest)
-    }
-}
-
-#[inline(always)]
-fn add_forces<L: Law, const D: usize, const LEVELS: usize, const IMAGE: bool>(
-    pairs: &Pairs<'_, L, D>,
-    rows: &Rows,
-    quanta: [Quantum; 2],
-    force: &mut [Forces<D, LEVELS>],
-    largest: &mut [i64; LANES],
-) {
-    let blocks = pairs.blocks;
-    let mut most = *largest;
-    for (place, own, row) in rows.iter() {
-        let (block, lane) = (place / LANES, place % LANES);
-        let mut r = [0.0; D];
-        for k in 0..D {
-            r[k] = blocks.position[block][k][lane];
-        }
-        let species = blocks.species[block][lane];
-        let mut total = [[NONE; D]; LEVELS];
-        meet::<L, D, LEVELS, IMAGE>(
-            pairs,
-            quanta,
-            (&r, species),
-            block,
-            later(lane, own),
-            &mut force[block],
-            &mut total,
-            &mut most,
-        );
-        for &other in row {
-            let other = other as usize;
-            meet::<L, D, LEVELS, IMAGE>(
-                pairs,
-                quanta,
-                (&r, species),
-                other,
-                [true; LANES],
-                &mut force[other],
-                &mut total,
-                &mut most,
-            );
-        }
-        recoil(&mut force[block], lane, &total);
-    }
-    *largest = most;
-}
-
-/// Takes what one particle exerted off the force on it.
-#[inline(never)] // the sums over lanes, where they can be seen, make the compiler give up on vectors in the loop before
-fn recoil<const D: usize, const LEVELS: usize>(force: &mut Forces<D, LEVELS>, lane: usize, total: &Forces<D, LEVELS>) {
-    for (force, total) in force.iter_mut().zip(total) {
-        for k in 0..D {
-            force[k][lane] = total[k].0.iter().fold(force[k][lane], |force, &f| force.wrapping_sub(f));
-        }
-    }
-}
-
-/// The forces of the particle at `r` on the particles of a block.
-#[inline(always)]
-fn meet<L: Law, const D: usize, const LEVELS: usize, const IMAGE: bool>(
-    pairs: &Pairs<'_, L, D>,
-    quanta: [Quantum; 2],
-    (r, species): (&[f64; D], u16),
-    other: usize,
-    counts: [bool; LANES],
-    force: &mut Forces<D, LEVELS>,
-    total: &mut Forces<D, LEVELS>,
-    most: &mut [i64; LANES],
-) {
-    let (arrow, r_squared) = arrows::<D, IMAGE>(&pairs.image, r, &pairs.blocks.position[other]);
-    let mut scale = [0.0; LANES];
-    for lane in 0..LANES {
-        let potential = pairs.law.between(species, pairs.blocks.species[other][lane]);
-        let f = potential.force_over_distance(r_squared[lane]);
-        let within = counts[lane] & (r_squared[lane] < potential.cutoff() * potential.cutoff());
-        scale[lane] = if within { f } else { 0.0 };
-    }
-    keep_largest(most, &scale);
-    for k in 0..D {
-        for lane in 0..LANES {
-            let mut left = arrow[k][lane] * scale[lane];
-            for level in 0..LEVELS {
-                let f;
-                (f, left) = quanta[level].split(left);
-                force[level][k][lane] = force[level][k][lane].wrapping_add(f);
-                total[level][k][lane] = total[level][k][lane].wrapping_add(f);
-            }
-        }
-    }
-}
-
-/// Energy and virial of a share, in `2^-51` quanta, and the largest terms of each.
-pub(super) struct Sums {
+/// Energy and virial of a share, in the finer quanta, every pair twice; and the largest terms of each.
+pub(super) struct Totals {
     pub(super) total: [i128; 2],
     pub(super) largest: [f64; 2],
 }
@@ -237,79 +325,63 @@ pub(super) struct AddEnergies<'a, L, const D: usize> {
     pub(super) pairs: Pairs<'a, L, D>,
     /// Of each sum, and of what its terms leave.
     pub(super) quanta: [[Quantum; 2]; 2],
+    /// Whether energies are shifted to vanish at the range.
+    pub(super) shifted: bool,
 }
 
-impl<L: Law, const D: usize> Kernel for AddEnergies<'_, L, D> {
-    type Output = Sums;
+/// Energy and virial of a block, as sums of bits.
+struct Energies<V: Lanes> {
+    shifted: bool,
+    magic: [[V; 2]; 2],
+    bits: [[V::Integers; 2]; 2],
+    most: [V::Integers; 2],
+}
+
+impl<V: Lanes, const D: usize> Sum<V, D> for Energies<V> {
+    const HOT: bool = false;
 
     #[inline(always)]
-    fn run(self) -> Sums {
-        let mut total = [0; 2];
-        let mut largest = [[0; LANES]; 2];
-        let share = self.pairs.share;
-        add_energies::<L, D, false>(&self.pairs, &share.direct, self.quanta, &mut total, &mut largest);
-        add_energies::<L, D, true>(&self.pairs, &share.imaged, self.quanta, &mut total, &mut largest);
-        Sums { total, largest: largest.map(largest_of) }
-    }
-}
-
-#[inline(always)]
-fn add_energies<L: Law, const D: usize, const IMAGE: bool>(
-    pairs: &Pairs<'_, L, D>,
-    rows: &Rows,
-    quanta: [[Quantum; 2]; 2],
-    total: &mut [i128; 2],
-    largest: &mut [[i64; LANES]; 2],
-) {
-    let blocks = pairs.blocks;
-    for (place, own, row) in rows.iter() {
-        let (block, lane) = (place / LANES, place % LANES);
-        let mut r = [0.0; D];
-        for k in 0..D {
-            r[k] = blocks.position[block][k][lane];
-        }
-        let species = blocks.species[block][lane];
-        let mut sums = [[[0i64; LANES]; 2]; 2];
-        count::<L, D, IMAGE>(pairs, quanta, (&r, species), block, later(lane, own), &mut sums, largest);
-        for &other in row {
-            count::<L, D, IMAGE>(pairs, quanta, (&r, species), other as usize, [true; LANES], &mut sums, largest);
-        }
-        for number in 0..2 {
-            for lane in 0..LANES {
-                total[number] += (i128::from(sums[number][0][lane]) << BITS) + i128::from(sums[number][1][lane]);
+    fn add<L: Law, const N: usize>(&mut self, meeting: &Meeting<V, L, D, N>) {
+        for n in 0..N {
+            let r_squared = meeting.r_squared[n];
+            let terms = [meeting.energy(n, self.shifted), r_squared.mul(meeting.force_over_distance(n))];
+            for number in 0..2 {
+                // Out of range the square may be infinite, and its product with zero no number.
+                let term = terms[number].where_less(r_squared, V::splat(f64::INFINITY));
+                self.most[number] = term.larger_bits(self.most[number]);
+                let mut left = term;
+                for level in 0..2 {
+                    let shifted = left.add(self.magic[number][level]);
+                    self.bits[number][level] = shifted.add_bits(self.bits[number][level]);
+                    left = left.sub(shifted.sub(self.magic[number][level]));
+                }
             }
         }
     }
 }
 
-/// Energy and virial of the particle at `r` with the particles of a block.
-#[inline(always)]
-fn count<L: Law, const D: usize, const IMAGE: bool>(
-    pairs: &Pairs<'_, L, D>,
-    quanta: [[Quantum; 2]; 2],
-    (r, species): (&[f64; D], u16),
-    other: usize,
-    counts: [bool; LANES],
-    sums: &mut [[[i64; LANES]; 2]; 2],
-    largest: &mut [[i64; LANES]; 2],
-) {
-    let (_, r_squared) = arrows::<D, IMAGE>(&pairs.image, r, &pairs.blocks.position[other]);
-    let mut terms = [[0.0; LANES]; 2];
-    for lane in 0..LANES {
-        let potential = pairs.law.between(species, pairs.blocks.species[other][lane]);
-        let range = potential.cutoff() * potential.cutoff();
-        let energy = potential.energy(r_squared[lane]) - if pairs.shifted { potential.energy(range) } else { 0.0 };
-        let virial = r_squared[lane] * potential.force_over_distance(r_squared[lane]);
-        let within = counts[lane] & (r_squared[lane] < range);
-        terms[0][lane] = if within { energy } else { 0.0 };
-        terms[1][lane] = if within { virial } else { 0.0 };
-    }
-    for number in 0..2 {
-        keep_largest(&mut largest[number], &terms[number]);
-        for lane in 0..LANES {
-            let (coarse, left) = quanta[number][0].split(terms[number][lane]);
-            sums[number][0][lane] = sums[number][0][lane].wrapping_add(coarse);
-            sums[number][1][lane] = sums[number][1][lane].wrapping_add(quanta[number][1].round(left));
+impl<L: Law, const D: usize> InLanes for AddEnergies<'_, L, D> {
+    type Output = Totals;
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) -> Totals {
+        let Self { pairs, quanta, shifted } = self;
+        let image = pairs.image.in_lanes::<V>();
+        let magic = quanta.map(|levels| [V::splat(levels[0].magic()), V::splat(levels[1].magic())]);
+        let (mut total, mut most) = ([0; 2], [V::zeros(); 2]);
+        for (block, near) in (pairs.rows.first..).zip(pairs.rows.iter()) {
+            let mut sum = Energies { shifted, magic, bits: [[V::zeros(); 2]; 2], most };
+            add_up::<V, L, _, D>(&pairs, &image, block, &near, &mut sum);
+            most = sum.most;
+            let terms = terms(&near);
+            for number in 0..2 {
+                let [coarse, fine] = sum.bits[number].map(V::integers);
+                for lane in 0..LANES {
+                    total[number] += i128::from(coarse[lane].wrapping_sub(quanta[number][0].bias(terms))) << BITS;
+                    total[number] += i128::from(fine[lane].wrapping_sub(quanta[number][1].bias(terms)));
+                }
+            }
         }
+        Totals { total, largest: most.map(|most| largest_of(V::integers(most))) }
     }
 }

@@ -1,9 +1,10 @@
 //! Springs alike between neighbours in memory.
 
-use corpuscle_core::Vector;
+use corpuscle_core::instructions::Kernel;
+use corpuscle_core::{Particles, Vector};
 
 use super::Spring;
-use crate::instructions::Kernel;
+use crate::image::NearestImage;
 
 /// First ends within one block of so many particles are handled together: what is written stays in the cache meanwhile.
 const NEAR: usize = 2048;
@@ -45,17 +46,23 @@ impl Run {
         Spring { first: self.spring.first + n, second: self.spring.second + n, ..self.spring }
     }
 
+    /// Whether it is too short for [`Stretch`] to be worth preparing.
+    pub(super) fn is_short(&self) -> bool {
+        self.count < BLOCK / 8
+    }
+
     /// Whether forces are `-k r`, component by component.
-    pub(super) fn is_linear(&self) -> bool {
+    fn is_linear(&self) -> bool {
         self.spring.rest_length == 0.0 && self.spring.damping == 0.0 && self.spring.obeys_hooke()
     }
 }
 
-/// Adds the accelerations by a run of linear springs.
+/// Adds the accelerations by a run of springs.
 pub(super) struct Stretch<'a, const D: usize> {
     pub(super) run: &'a Run,
-    pub(super) position: &'a [Vector<D>],
-    pub(super) mass: &'a [f64],
+    /// Nearest images, where there is a periodic axis.
+    pub(super) image: Option<NearestImage<D>>,
+    pub(super) particles: &'a Particles<D>,
     pub(super) acceleration: &'a mut [Vector<D>],
 }
 
@@ -64,19 +71,114 @@ impl<const D: usize> Kernel for Stretch<'_, D> {
 
     #[inline(always)]
     fn run(self) {
-        let Self { run: Run { spring, count }, position, mass, acceleration } = self;
+        let Self { run: Run { spring, count }, image, particles: Particles { position, velocity, mass, .. }, acceleration } = self;
+        let plain = self.run.is_linear() && image.is_none();
         let mut pull = [[0.0; D]; BLOCK];
+        let mut block = Block::<D>::new();
         for start in (0..*count).step_by(BLOCK) {
             let springs = BLOCK.min(count - start);
             let first = spring.first + start..spring.first + start + springs;
             let second = spring.second + start..spring.second + start + springs;
-            let pull = &mut pull.as_flattened_mut()[..springs * D];
-            let (from, to) = (Vector::components(&position[first.clone()]), Vector::components(&position[second.clone()]));
-            for ((pull, from), to) in pull.iter_mut().zip(from).zip(to) {
-                *pull = spring.stiffness * (to - from);
+            let pull = &mut pull[..springs];
+            if plain {
+                let (from, to) = (Vector::components(&position[first.clone()]), Vector::components(&position[second.clone()]));
+                for ((pull, from), to) in pull.as_flattened_mut().iter_mut().zip(from).zip(to) {
+                    *pull = spring.stiffness * (to - from);
+                }
+            } else {
+                block.load(image.as_ref(), &position[first.clone()], &position[second.clone()]);
+                block.stretch(spring, springs);
+                if spring.damping != 0.0 {
+                    block.damp(spring, &velocity[first.clone()], &velocity[second.clone()]);
+                }
+                for (n, pull) in pull.iter_mut().enumerate() {
+                    *pull = std::array::from_fn(|k| block.pull[k][n]);
+                }
             }
+            let pull = pull.as_flattened();
             add(pull, 1.0, &mass[first.clone()], &mut acceleration[first]);
             add(pull, -1.0, &mass[second.clone()], &mut acceleration[second]);
+        }
+    }
+}
+
+/// Some springs, one array a component.
+struct Block<const D: usize> {
+    /// From the first end to the second.
+    arrow: [[f64; BLOCK]; D],
+    squared: [f64; BLOCK],
+    /// Force on the first end.
+    pull: [[f64; BLOCK]; D],
+}
+
+impl<const D: usize> Block<D> {
+    #[inline(always)]
+    fn new() -> Self {
+        Self { arrow: [[0.0; BLOCK]; D], squared: [0.0; BLOCK], pull: [[0.0; BLOCK]; D] }
+    }
+
+    #[inline(always)]
+    fn load(&mut self, image: Option<&NearestImage<D>>, first: &[Vector<D>], second: &[Vector<D>]) {
+        for (n, (from, to)) in first.iter().zip(second).enumerate().take(BLOCK) {
+            for k in 0..D {
+                self.arrow[k][n] = to[k] - from[k];
+            }
+        }
+        if let Some(image) = image {
+            for k in 0..D {
+                for n in 0..BLOCK {
+                    self.arrow[k][n] = image.component(k, self.arrow[k][n]);
+                }
+            }
+        }
+        for n in 0..BLOCK {
+            self.squared[n] = self.arrow[0][n] * self.arrow[0][n];
+            for k in 1..D {
+                self.squared[n] += self.arrow[k][n] * self.arrow[k][n];
+            }
+        }
+    }
+
+    /// Elastic forces, as [`Spring::elastic`] has them.
+    #[inline(always)]
+    fn stretch(&mut self, spring: &Spring, count: usize) {
+        let Spring { stiffness, rest_length, quadratic, cubic, .. } = *spring;
+        let mut factor = [stiffness; BLOCK];
+        if !spring.obeys_hooke() {
+            for n in 0..count.min(BLOCK) {
+                let length = self.squared[n].sqrt();
+                let x = length - rest_length;
+                let tension = stiffness * x * (1.0 + x * (quadratic + x * cubic));
+                factor[n] = if length == 0.0 && rest_length == 0.0 { 0.0 } else { tension / length };
+            }
+        } else if rest_length != 0.0 {
+            for n in 0..count.min(BLOCK) {
+                factor[n] = -(stiffness * (rest_length / self.squared[n].sqrt() - 1.0));
+            }
+        }
+        for k in 0..D {
+            for n in 0..count.min(BLOCK) {
+                self.pull[k][n] = self.arrow[k][n] * factor[n];
+            }
+        }
+    }
+
+    /// Adds friction, as [`Spring::friction`] has it.
+    #[inline(always)]
+    fn damp(&mut self, spring: &Spring, first: &[Vector<D>], second: &[Vector<D>]) {
+        for (n, (from, to)) in first.iter().zip(second).enumerate().take(BLOCK) {
+            let v = *to - *from;
+            if spring.rest_length == 0.0 {
+                for k in 0..D {
+                    self.pull[k][n] += v[k] * spring.damping;
+                }
+            } else {
+                let r = Vector::from_fn(|k| self.arrow[k][n]);
+                let factor = spring.damping * v.dot(r) / self.squared[n];
+                for k in 0..D {
+                    self.pull[k][n] += r[k] * factor;
+                }
+            }
         }
     }
 }

@@ -1,12 +1,12 @@
 //! What pulls a group of targets, gathered in blocks, and how.
 
 use corpuscle_core::Vector;
+use corpuscle_core::instructions::Kernel;
 
 use super::super::direct::BLOCK;
 use super::super::lanes::{LANES, guess, inverse_root, sum};
 use super::super::scale::Scale;
 use super::build::{Body, Tree};
-use crate::instructions::Kernel;
 
 type Column = [f64; BLOCK];
 

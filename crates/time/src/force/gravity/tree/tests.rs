@@ -91,7 +91,7 @@ fn energy_and_virial_agree_with_direct_sums() {
 fn bits_depend_neither_on_the_instruction_set_nor_on_threads() {
     let particles = cluster::<3>(1500, 300);
     let run = |instructions| accelerations(TreeGravity { instructions, ..TreeGravity::new(1.0, 0.1, 0.6) }, &particles);
-    let plain = run(Instructions::Plain);
+    let plain = run(Instructions::PLAIN);
     for instructions in Instructions::all() {
         for threads in [1, 2, 3] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

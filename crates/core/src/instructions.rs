@@ -1,0 +1,162 @@
+//! Run-time choice of the instruction set.
+
+/// Work that is compiled once for each instruction set. `run` must be `#[inline(always)]`, and so must what it calls: only
+/// then does the compiler use the instructions of the function it ends up in.
+///
+/// All instruction sets must give the same bits: no fused operations, and no sums whose order depends on the width.
+pub trait Kernel {
+    /// What the work results in.
+    type Output;
+
+    /// Does the work.
+    fn run(self) -> Self::Output;
+}
+
+/// An instruction set this machine has.
+///
+/// ```
+/// use corpuscle_core::instructions::{Instructions, Kernel};
+///
+/// struct Sum<'a>(&'a [f64; 4], &'a [f64; 4]);
+///
+/// impl Kernel for Sum<'_> {
+///     type Output = [f64; 4];
+///
+///     #[inline(always)]
+///     fn run(self) -> [f64; 4] {
+///         std::array::from_fn(|lane| self.0[lane] + self.1[lane])
+///     }
+/// }
+///
+/// assert_eq!(Instructions::detect().run(Sum(&[1.0, 2.0, 3.0, 4.0], &[4.0, 3.0, 2.0, 1.0])), [5.0; 4]);
+/// ```
+// Private inside: whoever could make a value the machine does not support could run what it cannot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Instructions(Set);
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Set {
+    Plain,
+    #[cfg(target_arch = "x86_64")]
+    Avx2,
+    #[cfg(target_arch = "x86_64")]
+    Avx512,
+}
+
+impl Instructions {
+    /// What every machine of the target has.
+    pub const PLAIN: Self = Self(Set::Plain);
+
+    /// The best this machine has.
+    #[inline]
+    pub fn detect() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        {
+            if is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq") && is_x86_feature_detected!("avx512vl") {
+                return Self(Set::Avx512);
+            }
+            if is_x86_feature_detected!("avx2") {
+                return Self(Set::Avx2);
+            }
+        }
+        Self::PLAIN
+    }
+
+    /// Every one this machine has, the plainest first: for tests of their agreement.
+    pub fn all() -> Vec<Self> {
+        let mut all = vec![Self::PLAIN];
+        #[cfg(target_arch = "x86_64")]
+        {
+            let best = Self::detect();
+            if best != Self::PLAIN {
+                all.push(Self(Set::Avx2));
+            }
+            if best == Self(Set::Avx512) {
+                all.push(best);
+            }
+        }
+        all
+    }
+
+    /// Whether there are vectors of 256 bits: AVX2.
+    #[inline]
+    pub fn has_avx2(self) -> bool {
+        self != Self::PLAIN
+    }
+
+    /// This one without vectors or masks of AVX-512: for kernels that gain nothing from them.
+    #[inline]
+    #[must_use]
+    pub fn without_avx512(self) -> Self {
+        match self.0 {
+            #[cfg(target_arch = "x86_64")]
+            Set::Avx512 => Self(Set::Avx2),
+            set => Self(set),
+        }
+    }
+
+    /// Runs `kernel`, compiled for this instruction set.
+    #[inline]
+    pub fn run<K: Kernel>(self, kernel: K) -> K::Output {
+        match self.0 {
+            Set::Plain => kernel.run(),
+            #[cfg(target_arch = "x86_64")]
+            #[allow(unsafe_code, reason = "the one way into code for an instruction set chosen at run time")]
+            // SAFETY: `detect` and `all` make these values only where the machine has the instructions.
+            Set::Avx2 => unsafe { with_avx2(kernel) },
+            #[cfg(target_arch = "x86_64")]
+            #[allow(unsafe_code, reason = "the one way into code for an instruction set chosen at run time")]
+            // SAFETY: as above; AVX-512 never comes without AVX2.
+            Set::Avx512 => unsafe { with_avx512(kernel) },
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn with_avx2<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run()
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,avx512f,avx512dq,avx512vl")]
+fn with_avx512<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A sum over lanes, each in its own order.
+    struct Norm<'a>(&'a [f64]);
+
+    impl Kernel for Norm<'_> {
+        type Output = f64;
+
+        #[inline(always)]
+        #[allow(clippy::inline_always, reason = "else it is not compiled for the instruction set")]
+        fn run(self) -> f64 {
+            let mut lanes = [0.0; 8];
+            for chunk in self.0.as_chunks::<8>().0 {
+                for lane in 0..8 {
+                    lanes[lane] += chunk[lane].sqrt() * chunk[lane];
+                }
+            }
+            lanes.iter().sum()
+        }
+    }
+
+    #[test]
+    fn every_instruction_set_gives_the_same_bits() {
+        let mut random = crate::Random::new(1, 0);
+        let numbers: Vec<f64> = (0..800).map(|_| random.uniform()).collect();
+        let all = Instructions::all();
+        assert_eq!(all[0], Instructions::PLAIN);
+        assert_eq!(all.last(), Some(&Instructions::detect()));
+        for instructions in all {
+            assert_eq!(instructions.run(Norm(&numbers)), Norm(&numbers).run(), "{instructions:?}");
+            assert!(Instructions::all().contains(&instructions.without_avx512()));
+        }
+    }
+}
