@@ -1,5 +1,6 @@
 //! A running experiment, its dimension and engine erased: what the command and the window drive.
 
+use corpuscle_checkpoint::Resume;
 use corpuscle_core::{Failure, Invalid};
 use corpuscle_observe::{Chart, Check};
 use corpuscle_scene::Scene;
@@ -42,6 +43,16 @@ pub trait Simulation: Send {
     /// Times worth a picture in the report, in ascending order; the end is always added.
     fn moments(&self) -> Vec<f64> {
         vec![0.0]
+    }
+
+    /// What has changed since the start, for a checkpoint; none of an experiment that cannot be taken up again.
+    fn state(&self) -> Option<&dyn Resume> {
+        None
+    }
+
+    /// The same, of an experiment started alike, to be put where a checkpoint left it.
+    fn state_mut(&mut self) -> Option<&mut dyn Resume> {
+        None
     }
 
     /// Does something to the system now.

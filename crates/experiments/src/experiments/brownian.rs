@@ -13,6 +13,7 @@
 mod bath;
 mod charts;
 
+use corpuscle_checkpoint::{Resume, resume};
 use corpuscle_core::{Axis as Faces, Engine, Failure, Invalid, particles::ball_volume};
 use corpuscle_observe::{Chart, Check, Curves, Estimate, Schedule, msd, theory, vacf};
 use corpuscle_scene::{Colour, Colouring, Scene, TrailPoint};
@@ -285,7 +286,17 @@ impl<const D: usize> Brownian<D> {
     }
 }
 
+resume!(Brownian<const D> { values: [schedule, times], parts: [baths], set_up: [set, duration] });
+
 impl<const D: usize> Simulation for Brownian<D> {
+    fn state(&self) -> Option<&dyn Resume> {
+        Some(self)
+    }
+
+    fn state_mut(&mut self) -> Option<&mut dyn Resume> {
+        Some(self)
+    }
+
     fn time(&self) -> f64 {
         self.baths[0].time()
     }

@@ -10,6 +10,7 @@
 mod charts;
 mod room;
 
+use corpuscle_checkpoint::{Resume, resume};
 use std::f64::consts::LN_2;
 
 use corpuscle_core::{Boundary, Engine, Failure, Invalid, Vector};
@@ -219,6 +220,7 @@ struct Entropy<const D: usize> {
 }
 
 /// The way out of the room on show, remembered, and how far the way back strays from it.
+#[derive(serde::Serialize, serde::Deserialize)]
 struct Echo<const D: usize> {
     /// Sample at which the velocities are reversed.
     turn: usize,
@@ -326,7 +328,21 @@ impl<const D: usize> Entropy<D> {
     }
 }
 
+resume!(Entropy<const D> {
+    values: [schedule, time, times, echo],
+    parts: [replicas, shown],
+    set_up: [set, duration],
+});
+
 impl<const D: usize> Simulation for Entropy<D> {
+    fn state(&self) -> Option<&dyn Resume> {
+        Some(self)
+    }
+
+    fn state_mut(&mut self) -> Option<&mut dyn Resume> {
+        Some(self)
+    }
+
     fn time(&self) -> f64 {
         self.time
     }

@@ -9,6 +9,7 @@ mod checks;
 mod system;
 mod theory;
 
+use corpuscle_checkpoint::{Resume, resume};
 use corpuscle_core::{Axis, Engine, Failure, Invalid, Random};
 use corpuscle_observe::{Chart, Check, Estimate};
 use corpuscle_scene::{Colouring, Scene};
@@ -260,7 +261,18 @@ impl<const D: usize> Laboratory<D> {
     }
 }
 
+resume!(Point<const D> { values: [], parts: [replicas], set_up: [state, expected] });
+resume!(Laboratory<const D> { values: [time], parts: [base, sweeps, dense], set_up: [pace, samples] });
+
 impl<const D: usize> Simulation for Laboratory<D> {
+    fn state(&self) -> Option<&dyn Resume> {
+        Some(self)
+    }
+
+    fn state_mut(&mut self) -> Option<&mut dyn Resume> {
+        Some(self)
+    }
+
     fn time(&self) -> f64 {
         self.time
     }

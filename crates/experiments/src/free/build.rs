@@ -1,5 +1,6 @@
 //! From the description of a free system to an engine, every number checked on the way.
 
+use corpuscle_checkpoint::{Fault, Reader, Resume, Writer};
 use corpuscle_core::placement::stop_drift;
 use corpuscle_core::{Axis, Boundary, Engine, Failure, Hole, Invalid, Observer, Particles, Partition, Random, Vector};
 use corpuscle_event::{EventDriven, Rules};
@@ -65,6 +66,25 @@ impl<const D: usize> AnyEngine<D> {
             Self::Event(engine) => (engine.kinetic_energy(), engine.potential_energy()),
             Self::Time(engine) => (engine.kinetic_energy(), engine.potential_energy()),
         }
+    }
+}
+
+impl<const D: usize> Resume for AnyEngine<D> {
+    fn save(&self, out: &mut Writer) -> Result<(), Fault> {
+        out.fields(1)?;
+        match self {
+            Self::Event(engine) => out.value("event", engine),
+            Self::Time(engine) => out.part("time", engine),
+        }
+    }
+
+    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), Fault> {
+        from.fields(1)?;
+        match self {
+            Self::Event(engine) => **engine = from.value("event")?,
+            Self::Time(engine) => from.part("time", engine)?,
+        }
+        Ok(())
     }
 }
 

@@ -1,5 +1,6 @@
 //! A free system under way: advanced, sampled and drawn.
 
+use corpuscle_checkpoint::{Resume, resume};
 use std::collections::VecDeque;
 
 use corpuscle_core::{Axis as Faces, Engine, Failure, Invalid, Particles, Vector};
@@ -23,7 +24,7 @@ const TRAIL: usize = 2000;
 const SETTLED: f64 = 0.2;
 
 /// What is noted at each sampling time.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Sample {
     pub(super) time: f64,
     pub(super) kinetic: f64,
@@ -34,6 +35,7 @@ pub(super) struct Sample {
 }
 
 /// A step of a path that is drawn.
+#[derive(serde::Serialize, serde::Deserialize)]
 struct Step<const D: usize> {
     point: TrailPoint,
     unwrapped: Vector<D>,
@@ -274,7 +276,27 @@ fn sample_interval<const D: usize>(system: &System, engine: &AnyEngine<D>) -> Re
     Ok(interval)
 }
 
+resume!(Free<const D> {
+    values: [
+        trails, reached, schedule, samples, settled_from, momentum, energy, motion, rise, lowest, wall_pressure, virial_pressure,
+        speeds, structure, displacement
+    ],
+    parts: [engine],
+    set_up: [
+        title, names, observe, springs, duration, structure_every, start, start_particles, degrees_of_freedom, elastic, conservative,
+        closed, field
+    ],
+});
+
 impl<const D: usize> Simulation for Free<D> {
+    fn state(&self) -> Option<&dyn Resume> {
+        Some(self)
+    }
+
+    fn state_mut(&mut self) -> Option<&mut dyn Resume> {
+        Some(self)
+    }
+
     fn time(&self) -> f64 {
         self.reached
     }
