@@ -4,7 +4,9 @@ pub(crate) mod bench;
 pub(crate) mod check;
 pub(crate) mod list;
 pub(crate) mod record;
+pub(crate) mod resume;
 pub(crate) mod run;
+pub(crate) mod schema;
 mod target;
 pub(crate) mod view;
 
@@ -62,7 +64,7 @@ fn physical_time(text: &str) -> Result<f64, String> {
 }
 
 /// Reads a number above zero.
-fn positive(text: &str) -> Result<f64, String> {
+pub(crate) fn positive(text: &str) -> Result<f64, String> {
     text.trim()
         .parse()
         .ok()

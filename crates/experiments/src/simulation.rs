@@ -90,6 +90,39 @@ pub struct Honesty {
     pub largest_overlap: Option<f64>,
     /// Time step times the highest frequency, for a time-driven engine that has such a limit.
     pub stability_number: Option<f64>,
+    /// Events of an event-driven engine that had become obsolete when their time came, and were rejected.
+    pub rejected_events: Option<u64>,
+    /// Physical time until which single paths are known: beyond it rounding has grown to the size of what moves.
+    pub precision_horizon: Option<f64>,
+}
+
+/// Largest overlap, relative energy and momentum drift of hard particles: what 10^9 collisions of this engine leave (6e-16,
+/// 2.3e-12 and 3e-16) lies orders of magnitude below, what a lost collision leaves above.
+const HARD_BOUND: f64 = 1e-7;
+
+impl Honesty {
+    /// What is broken that this dynamics keeps by itself, in words; none of a sound run.
+    ///
+    /// Hard particles conserve energy and momentum and do not overlap, up to rounding. Integrators have an error of their own,
+    /// which a check judges; but all that was measured has to be a number.
+    pub fn broken(&self) -> Option<String> {
+        let quantities = [
+            ("the energy drift", self.energy_drift),
+            ("the momentum drift", self.momentum_drift),
+            ("the angular momentum drift", self.angular_momentum_drift),
+            ("the largest overlap", self.largest_overlap),
+        ];
+        let hard = self.largest_overlap.is_some();
+        for (name, value) in quantities.into_iter().filter_map(|(name, value)| Some((name, value?))) {
+            if !value.is_finite() {
+                return Some(format!("{name} is {value}: an invariant is broken"));
+            }
+            if hard && value > HARD_BOUND {
+                return Some(format!("{name} is {value:.1e}, where rounding leaves less than {HARD_BOUND:.0e}: an invariant is broken"));
+            }
+        }
+        None
+    }
 }
 
 /// A table of numbers.

@@ -19,6 +19,7 @@ use corpuscle_observe::entropy::{Cells, equilibrium_entropy};
 use corpuscle_observe::{Chart, Check, Estimate, Schedule, theory};
 use corpuscle_scene::{Colour, Colouring, Label, Region, Scene};
 
+use crate::horizon::precision_horizon;
 use crate::{Action, Experiment, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, gas};
 use room::{Process, Room, Sample};
 
@@ -449,6 +450,8 @@ impl<const D: usize> Simulation for Entropy<D> {
             work_unit: "collisions",
             energy_drift: Some(rooms().map(drift).fold(0.0, f64::max)),
             largest_overlap: Some(rooms().map(|room| overlap(&room.engine)).fold(0.0, f64::max)),
+            rejected_events: Some(rooms().map(|room| room.engine.counts().stale).sum()),
+            precision_horizon: precision_horizon(&self.shown.engine),
             ..Honesty::default()
         }
     }

@@ -14,6 +14,7 @@ use corpuscle_core::{Axis, Engine, Failure, Invalid, Random};
 use corpuscle_observe::{Chart, Check, Estimate};
 use corpuscle_scene::{Colouring, Scene};
 
+use crate::horizon::precision_horizon;
 use crate::drawing::add_event_driven;
 use crate::simulation::{Honesty, Simulation, Table};
 use crate::{Experiment, Kind, Parameter, Settings, ensemble, gas};
@@ -331,6 +332,8 @@ impl<const D: usize> Simulation for Laboratory<D> {
             work_unit: "collisions",
             energy_drift: systems().filter_map(|system| system.energy.largest()).reduce(f64::max),
             largest_overlap: self.base.replicas.iter().map(overlap).reduce(f64::max),
+            rejected_events: Some(systems().map(|system| system.engine.counts().stale).sum()),
+            precision_horizon: precision_horizon(&self.base.replicas[0].engine),
             ..Honesty::default()
         }
     }

@@ -321,8 +321,10 @@ impl Simulation for ThreeBody {
             energy_drift: Some(run.relative_energy_error()),
             momentum_drift: Some(run.relative_momentum_error()),
             angular_momentum_drift: Some(run.relative_angular_momentum_error()),
-            largest_overlap: None,
             stability_number: run.engine.integrator().dt().map(|dt| dt * run.fastest),
+            // Until neighbouring paths, which part as measured, have gone from rounding to the size of the orbits.
+            precision_horizon: self.parting.growth().map(|growth| -libm::log(f64::EPSILON) / growth.rate.mean),
+            ..Honesty::default()
         }
     }
 

@@ -10,6 +10,7 @@ use corpuscle_scene::{Colour, Colouring, Line, Scene, TrailPoint};
 use super::build::{AnyEngine, Built, build};
 use super::spec::{Observable, System};
 use super::verdict::Conserved;
+use crate::horizon::precision_horizon;
 use crate::{Action, Honesty, Simulation, Table, drawing};
 
 /// Samples taken when the file does not say how often.
@@ -60,6 +61,8 @@ pub(super) struct Free<const D: usize> {
     /// Index of the first sample in equilibrium, once there is one.
     pub(super) settled_from: Option<usize>,
     pub(super) momentum: Conserved<3>,
+    /// Angular momentum about the origin.
+    angular_momentum: Conserved<3>,
     /// Energy against the magnitude of its terms, which rounding is relative to.
     pub(super) energy: Conserved<1>,
     /// Energy against what moves: the largest kinetic energy.
@@ -125,6 +128,7 @@ impl<const D: usize> Free<D> {
             samples: vec![],
             settled_from: None,
             momentum: Conserved::new(),
+            angular_momentum: Conserved::new(),
             energy: Conserved::new(),
             motion: Conserved::new(),
             rise: 0.0,
@@ -157,6 +161,8 @@ impl<const D: usize> Free<D> {
         self.samples.push(Sample { time, kinetic, potential, temperature, pressure });
         let moving = particles.velocity.iter().zip(&particles.mass).map(|(v, m)| m * v.norm()).sum();
         self.momentum.see(particles.momentum().to_three(), moving);
+        let arms = particles.position.iter().zip(&particles.velocity).zip(&particles.mass).map(|((r, v), m)| m * r.norm() * v.norm());
+        self.angular_momentum.see(particles.angular_momentum(), arms.sum());
         let energy = kinetic + potential;
         self.energy.see([energy], kinetic + potential.abs());
         self.motion.see([energy], kinetic);
@@ -241,6 +247,11 @@ impl<const D: usize> Free<D> {
         2.0 * (kinetic - drift).max(0.0) / self.degrees_of_freedom as f64
     }
 
+    /// Whether nothing takes up angular momentum either: no faces at all.
+    fn isolated(&self) -> bool {
+        self.closed && self.conservative && self.engine.boundary().axes.iter().all(|&axis| axis == Faces::Open)
+    }
+
     pub(super) fn largest_radius(&self) -> f64 {
         self.start_particles.radius.iter().copied().fold(0.0, f64::max)
     }
@@ -278,7 +289,7 @@ fn sample_interval<const D: usize>(system: &System, engine: &AnyEngine<D>) -> Re
 
 resume!(Free<const D> {
     values: [
-        trails, reached, schedule, samples, settled_from, momentum, energy, motion, rise, lowest, wall_pressure, virial_pressure,
+        trails, reached, schedule, samples, settled_from, momentum, angular_momentum, energy, motion, rise, lowest, wall_pressure, virial_pressure,
         speeds, structure, displacement
     ],
     parts: [engine],
@@ -386,6 +397,15 @@ impl<const D: usize> Simulation for Free<D> {
                 AnyEngine::Time(_) => self.conservative.then(|| self.motion.relative()),
             },
             momentum_drift: self.closed.then(|| self.momentum.relative()),
+            angular_momentum_drift: self.isolated().then(|| self.angular_momentum.relative()),
+            rejected_events: match &self.engine {
+                AnyEngine::Event(engine) => Some(engine.counts().stale),
+                AnyEngine::Time(_) => None,
+            },
+            precision_horizon: match &self.engine {
+                AnyEngine::Event(engine) => precision_horizon(engine),
+                AnyEngine::Time(_) => None,
+            },
             ..Honesty::default()
         }
     }
@@ -404,7 +424,7 @@ impl<const D: usize> Simulation for Free<D> {
     fn act(&mut self, action: Action) -> Result<(), Invalid> {
         let Action::Reverse = action;
         // Turning round is an outside change of momentum: what is conserved counts from here.
-        self.momentum = Conserved::new();
+        (self.momentum, self.angular_momentum) = (Conserved::new(), Conserved::new());
         match &mut self.engine {
             AnyEngine::Event(engine) => engine.reverse_velocities(),
             AnyEngine::Time(engine) => engine.edit(|particles| particles.velocity.iter_mut().for_each(|v| *v = -*v))?,

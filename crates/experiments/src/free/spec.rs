@@ -1,9 +1,10 @@
 //! The description of a free system, as a scenario file spells it.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A system of the user's own: box, particles, interactions, engine, and what to observe for how long.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct System {
     /// Title shown on pictures and the report.
@@ -53,7 +54,7 @@ fn default_title() -> String {
 }
 
 /// The two engines.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum EngineKind {
     /// Hard particles, from collision to collision.
@@ -63,7 +64,7 @@ pub enum EngineKind {
 }
 
 /// The box.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Room {
     /// Lower corner.
@@ -75,7 +76,7 @@ pub struct Room {
 }
 
 /// One word for all axes, or one word an axis.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Faces {
     /// The same across every axis.
@@ -85,7 +86,7 @@ pub enum Faces {
 }
 
 /// Kind of the two faces across an axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Face {
     /// Out at one side, in at the other.
@@ -97,7 +98,7 @@ pub enum Face {
 }
 
 /// Name of an axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum AxisName {
     /// The first.
@@ -109,7 +110,7 @@ pub enum AxisName {
 }
 
 /// A thin hard plate.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Plate {
     /// Axis the plate is perpendicular to.
@@ -122,7 +123,7 @@ pub struct Plate {
 }
 
 /// An opening in a plate.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Opening {
     /// Axis along which it is measured.
@@ -134,7 +135,7 @@ pub struct Opening {
 }
 
 /// Particles generated in number.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Species {
     /// Name shown in the legend.
@@ -167,7 +168,7 @@ fn one() -> f64 {
 }
 
 /// A particle placed by hand.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Single {
     /// Name of its species shown in the legend.
@@ -193,7 +194,7 @@ pub struct Single {
 }
 
 /// A spring between two particles.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Bond {
     /// Index of one end.
@@ -211,7 +212,7 @@ pub struct Bond {
 }
 
 /// Rules of collision.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Collisions {
     /// Coefficient of restitution, 1 for elastic.
@@ -223,7 +224,7 @@ pub struct Collisions {
 }
 
 /// Forces between particles, each of all pairs.
-#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Forces {
     /// Newton's gravity.
@@ -238,7 +239,7 @@ pub struct Forces {
 }
 
 /// Newton's gravity.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Gravitation {
     /// Constant of gravity.
@@ -250,7 +251,7 @@ pub struct Gravitation {
 }
 
 /// A pair potential of energy scale `epsilon` and length scale `sigma`.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Contact {
     /// Depth.
@@ -265,7 +266,7 @@ pub struct Contact {
 }
 
 /// Integrator and its step.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Stepper {
     /// Name: one of `Integrator::NAMES`.
@@ -276,7 +277,7 @@ pub struct Stepper {
 }
 
 /// What can be measured in a free system.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Observable {
     /// Kinetic temperature against time.
