@@ -13,6 +13,8 @@ pub(crate) mod view;
 use clap::Args;
 use corpuscle_io::{Refusal, Registry, Scenario};
 
+use crate::memory;
+
 /// What to run, and how it differs from its defaults.
 #[derive(Args)]
 pub(crate) struct Subject {
@@ -37,6 +39,7 @@ impl Subject {
         if let Some(seed) = self.seed {
             scenario.settings.seed = seed;
         }
+        memory::admit(&scenario)?;
         Ok(scenario)
     }
 }

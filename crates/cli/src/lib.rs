@@ -7,6 +7,7 @@
 mod command;
 mod console;
 mod keeper;
+mod memory;
 mod picture;
 mod progress;
 mod session;

@@ -13,7 +13,9 @@ pub(crate) fn verdict(record: &Record) -> String {
         if passed == all { format!("all {all} checks passed") } else { format!("{} of {all} checks failed", all - passed) };
     match record.ending {
         Ending::Finished => checks,
-        Ending::Interrupted | Ending::Running => format!("interrupted at t = {}; of what was measured, {checks}", significant(record.time, 5)),
+        Ending::Interrupted | Ending::Running => {
+            format!("interrupted at t = {}; of what was measured, {checks}", significant(record.time, 5))
+        }
         Ending::Failed(_) => {
             format!("could not be finished; of what was measured until t = {}, {checks}", significant(record.time, 5))
         }

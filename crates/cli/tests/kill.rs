@@ -116,7 +116,10 @@ fn survive(kills: u32) {
             assert_eq!(expected.len(), found.len(), "{name}, run {runs}");
             fs::remove_dir_all(folder.path().join(&out)).unwrap();
         }
-        println!("{name}: {done} kills ({before} before the first checkpoint) in {runs} runs of {:.1} s, all the same", whole.as_secs_f64());
+        println!(
+            "{name}: {done} kills ({before} before the first checkpoint) in {runs} runs of {:.1} s, all the same",
+            whole.as_secs_f64()
+        );
     }
 }
 

@@ -118,7 +118,9 @@ impl Honesty {
                 return Some(format!("{name} is {value}: an invariant is broken"));
             }
             if hard && value > HARD_BOUND {
-                return Some(format!("{name} is {value:.1e}, where rounding leaves less than {HARD_BOUND:.0e}: an invariant is broken"));
+                return Some(format!(
+                    "{name} is {value:.1e}, where rounding leaves less than {HARD_BOUND:.0e}: an invariant is broken"
+                ));
             }
         }
         None

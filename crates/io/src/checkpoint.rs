@@ -85,7 +85,9 @@ pub enum CheckpointError {
     #[error("is damaged: its checksum is another")]
     Damaged,
     /// Another version wrote it, which may compute other bits.
-    #[error("was written by Corpuscle {0}; this is {VERSION}, which may compute other bits: use that version, or run the scenario anew")]
+    #[error(
+        "was written by Corpuscle {0}; this is {VERSION}, which may compute other bits: use that version, or run the scenario anew"
+    )]
     Program(String),
     /// What it holds does not fit.
     #[error("does not fit this program: {0}")]

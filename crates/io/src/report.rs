@@ -238,8 +238,16 @@ fn honesty(record: &Record) -> String {
         ("Angular momentum", share(honesty.angular_momentum_drift), "largest relative drift seen"),
         ("Overlap", share(honesty.largest_overlap), "deepest seen, over the contact distance"),
         ("Stability number", share(honesty.stability_number), "time step times highest frequency"),
-        ("Rejected events", honesty.rejected_events.map(grouped), "obsolete when their time came, since a partner had collided meanwhile"),
-        ("Precision horizon", honesty.precision_horizon.map(short), "time until which single paths are known; averages hold beyond"),
+        (
+            "Rejected events",
+            honesty.rejected_events.map(grouped),
+            "obsolete when their time came, since a partner had collided meanwhile",
+        ),
+        (
+            "Precision horizon",
+            honesty.precision_horizon.map(short),
+            "time until which single paths are known; averages hold beyond",
+        ),
         ("Rate", record.rate().map(|rate| format!("{} a second", brief(rate))), "on the clock, on this machine"),
     ];
     let mut out = String::from(

@@ -14,8 +14,8 @@ use corpuscle_core::{Axis, Engine, Failure, Invalid, Random};
 use corpuscle_observe::{Chart, Check, Estimate};
 use corpuscle_scene::{Colouring, Scene};
 
-use crate::horizon::precision_horizon;
 use crate::drawing::add_event_driven;
+use crate::horizon::precision_horizon;
 use crate::simulation::{Honesty, Simulation, Table};
 use crate::{Experiment, Kind, Parameter, Settings, ensemble, gas};
 use system::{Pace, State, System};

@@ -161,7 +161,8 @@ impl<const D: usize> Free<D> {
         self.samples.push(Sample { time, kinetic, potential, temperature, pressure });
         let moving = particles.velocity.iter().zip(&particles.mass).map(|(v, m)| m * v.norm()).sum();
         self.momentum.see(particles.momentum().to_three(), moving);
-        let arms = particles.position.iter().zip(&particles.velocity).zip(&particles.mass).map(|((r, v), m)| m * r.norm() * v.norm());
+        let arms =
+            particles.position.iter().zip(&particles.velocity).zip(&particles.mass).map(|((r, v), m)| m * r.norm() * v.norm());
         self.angular_momentum.see(particles.angular_momentum(), arms.sum());
         let energy = kinetic + potential;
         self.energy.see([energy], kinetic + potential.abs());

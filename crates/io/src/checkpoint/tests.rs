@@ -56,8 +56,13 @@ fn no_byte_can_be_lost_or_changed_unseen() {
             assert!(read(&bad).is_err(), "byte {at} is another");
         }
     }
-    assert!(refusal(&[&good[..], b"\0"].concat()).contains("is cut off") || refusal(&[&good[..], b"\0"].concat()).contains("bytes"));
-    assert_eq!(refusal(b"not a checkpoint at all, but long enough to be one, if only it began as one"), "is no checkpoint of Corpuscle");
+    assert!(
+        refusal(&[&good[..], b"\0"].concat()).contains("is cut off") || refusal(&[&good[..], b"\0"].concat()).contains("bytes")
+    );
+    assert_eq!(
+        refusal(b"not a checkpoint at all, but long enough to be one, if only it began as one"),
+        "is no checkpoint of Corpuscle"
+    );
     let mut bad = good.clone();
     *bad.last_mut().unwrap() ^= 1;
     assert_eq!(refusal(&bad), "is damaged: its checksum is another");
