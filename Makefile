@@ -24,7 +24,8 @@ soak: ## An hour or so: 10^9 collisions, 10^8 contacts of grains; nothing may dr
 kill: setup-test ## A quarter of an hour: 200 kills at random moments, each run resumed to the same bits
 	$(CARGO) test --release --locked -p corpuscle --test kill -- --ignored --nocapture
 
-fuzz: setup-test ## Ten minutes or so: strangers' files, read or refused
+fuzz: setup-test ## Ten minutes or so: strangers' files, read or refused; tens of thousands of random systems, all invariants on
+	FUZZ_FACTOR=30 $(CARGO) test --release --locked -p corpuscle-event --test invariants
 	FUZZ_CASES=200000 PROPTEST_CASES=20000 $(CARGO) test --release --locked -p corpuscle-io -- --nocapture
 
 lint: ## Format and house rules

@@ -80,6 +80,10 @@ impl Keeper {
         if !able && (policy.time.is_some() || policy.work.is_some() || policy.wall.is_some_and(|wall| wall != USUAL)) {
             complain("this experiment cannot be taken up again: no checkpoints are written");
         }
+        // A policy may come from a stranger's file.
+        let positive = |interval: &f64| *interval > 0.0;
+        let (wall, time, work) = (policy.wall.filter(positive), policy.time.filter(positive), policy.work.filter(|&work| work > 0));
+        let policy = Policy { wall, time, work, ..policy };
         let policy = if able { policy } else { Policy { wall: None, time: None, work: None, ..policy } };
         let work = if policy.work.is_some() { simulation.honesty().work } else { 0 };
         Self { checkpoints: Checkpoints::of(folder), policy, clock: Instant::now(), time: simulation.time(), work, newest }
@@ -97,7 +101,9 @@ impl Keeper {
 
     /// The physical time at which the next one is due.
     pub(crate) fn next_time(&self) -> f64 {
-        self.policy.time.map_or(f64::INFINITY, |interval| interval * ((self.time / interval).floor() + 1.0))
+        let next = |interval: f64| interval * ((self.time / interval).floor() + 1.0);
+        // An interval below the resolution of time is no reason to stand still.
+        self.policy.time.map_or(f64::INFINITY, |interval| next(interval).max(self.time.next_up()))
     }
 
     /// Whether one is due now.

@@ -260,3 +260,6 @@ fn save_numbers(record: &Record, folder: &Folder) -> Result<(), WriteError> {
     }
     folder.write("summary.json", summary::json(record).as_bytes())
 }
+
+#[cfg(test)]
+mod tests;

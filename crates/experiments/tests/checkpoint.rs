@@ -5,7 +5,7 @@
 
 use corpuscle_checkpoint::{Reader, Writer};
 use corpuscle_core::Random;
-use corpuscle_experiments::{REGISTRY, Settings, Simulation, find, free};
+use corpuscle_experiments::{Honesty, REGISTRY, Settings, Simulation, find, free};
 
 fn written(simulation: &dyn Simulation) -> Vec<u8> {
     let mut out = Writer::new();
@@ -76,6 +76,24 @@ fn free_systems() {
         let system: free::System = toml::from_str(text).unwrap();
         compare(name, &|| free::start(&system, 3).unwrap(), 1.0);
     }
+}
+
+/// Hard particles that overlap, or gain energy, and anything that is no number: not a run to go on with. An integrator's own
+/// error is another matter.
+#[test]
+fn a_broken_invariant_is_seen() {
+    let hard = |overlap: f64, drift: f64| Honesty {
+        largest_overlap: Some(overlap),
+        energy_drift: Some(drift),
+        ..Honesty::default()
+    };
+    assert_eq!(hard(6e-16, 2.3e-12).broken(), None);
+    assert!(hard(1e-3, 1e-12).broken().unwrap().contains("overlap is 1.0e-3"));
+    assert!(hard(1e-15, 1e-3).broken().unwrap().contains("energy drift"));
+    assert!(hard(f64::NAN, 0.0).broken().unwrap().contains("NaN"));
+    let soft = |drift: f64| Honesty { energy_drift: Some(drift), ..Honesty::default() };
+    assert_eq!(soft(1e-3).broken(), None);
+    assert!(soft(f64::INFINITY).broken().is_some());
 }
 
 const SYSTEMS: [(&str, &str); 3] = [

@@ -12,7 +12,7 @@ use corpuscle_io::{Checkpoint, CheckpointError, Checkpoints, Folder, Origin, Ref
 use super::run::use_threads;
 use crate::session::{SCENARIO, Session};
 use crate::trouble::Trouble;
-use crate::{console, keeper};
+use crate::{console, keeper, memory};
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -64,6 +64,7 @@ fn newest_good(files: &[PathBuf], registry: Registry, scenario: &Path) -> Result
         let found = Checkpoint::read(file).and_then(|checkpoint| {
             let refused = |refusal: Refusal| CheckpointError::Content(corpuscle_checkpoint::Fault::new(refusal));
             let scenario = Scenario::parse(registry, &checkpoint.run.scenario, scenario).map_err(refused)?;
+            memory::admit(&scenario).map_err(refused)?;
             let mut simulation = scenario.start().map_err(refused)?;
             checkpoint.load(simulation.as_mut())?;
             Ok((checkpoint, scenario, simulation))
@@ -86,6 +87,7 @@ fn from_the_beginning(arguments: &Arguments, registry: Registry, path: &Path, fr
         return Err(refuse(path, "a run that has not finished, or whose checkpoints were kept; this one left its report"));
     }
     let scenario = Scenario::read(registry, &path.join(SCENARIO))?;
+    memory::admit(&scenario)?;
     let simulation = scenario.start()?;
     if !arguments.quiet {
         console::print(&format!("{} ({}), from the beginning: there is no checkpoint yet\n", scenario.title(), scenario.name()))?;
