@@ -17,10 +17,14 @@ const USUAL: f64 = 60.0;
 /// How many are kept: should the newest be damaged, there is another.
 const KEPT: usize = 2;
 
+/// Time between two of them in units of what one takes, where the clock decides: no more than a tenth of a run goes into them.
+const LEAST: u32 = 9;
+
 /// When checkpoints are to be written.
 #[derive(Args)]
 pub(crate) struct Options {
-    /// Write a checkpoint every so many seconds on the clock [default: 60, unless another interval is given].
+    /// Write a checkpoint every so many seconds on the clock, and not so often that it costs more than a tenth of the time
+    /// [default: 60, unless another interval is given].
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
     checkpoint_wall: Option<f64>,
     /// Write a checkpoint whenever so much physical time has passed.
@@ -69,6 +73,8 @@ pub(crate) struct Keeper {
     clock: Instant,
     time: f64,
     work: u64,
+    /// What the last one took.
+    cost: Duration,
     /// Physical time of the newest there is.
     newest: Option<f64>,
 }
@@ -86,7 +92,15 @@ impl Keeper {
         let policy = Policy { wall, time, work, ..policy };
         let policy = if able { policy } else { Policy { wall: None, time: None, work: None, ..policy } };
         let work = if policy.work.is_some() { simulation.honesty().work } else { 0 };
-        Self { checkpoints: Checkpoints::of(folder), policy, clock: Instant::now(), time: simulation.time(), work, newest }
+        Self {
+            checkpoints: Checkpoints::of(folder),
+            policy,
+            clock: Instant::now(),
+            time: simulation.time(),
+            work,
+            cost: Duration::ZERO,
+            newest,
+        }
     }
 
     /// When checkpoints are written.
@@ -108,7 +122,8 @@ impl Keeper {
 
     /// Whether one is due now.
     pub(crate) fn is_due(&self, simulation: &dyn Simulation) -> bool {
-        self.policy.wall.is_some_and(|seconds| self.clock.elapsed() >= Duration::from_secs_f64(seconds.min(1e9)))
+        let long_enough = |seconds: f64| self.clock.elapsed() >= Duration::from_secs_f64(seconds.min(1e9)).max(LEAST * self.cost);
+        self.policy.wall.is_some_and(long_enough)
             || simulation.time() >= self.next_time()
             || self.policy.work.is_some_and(|interval| simulation.honesty().work / interval > self.work / interval)
     }
@@ -123,9 +138,14 @@ impl Keeper {
     pub(crate) fn write(&mut self, run: &Run, simulation: &dyn Simulation) -> Result<(), Trouble> {
         let bytes = bytes(run, simulation).map_err(|fault| Trouble::Fault(format!("the state cannot be written down: {fault}")))?;
         self.checkpoints.write(&bytes, self.policy.keep)?;
-        (self.clock, self.time, self.newest) = (Instant::now(), simulation.time(), Some(simulation.time()));
+        (self.time, self.newest) = (simulation.time(), Some(simulation.time()));
         self.work = if self.policy.work.is_some() { simulation.honesty().work } else { 0 };
         Ok(())
+    }
+
+    /// A checkpoint, and what goes with it, has taken so long.
+    pub(crate) fn took(&mut self, cost: Duration) {
+        (self.clock, self.cost) = (Instant::now(), cost);
     }
 
     /// The run has finished and everything is written down.

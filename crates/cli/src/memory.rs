@@ -7,8 +7,8 @@ use corpuscle_experiments::Value;
 use corpuscle_io::scenario::Subject;
 use corpuscle_io::{Origin, Refusal, Scenario};
 
-/// Bytes a particle needs at most: state, plans, lists of neighbours, a snapshot and a checkpoint being written. Measured:
-/// docs/reliability.md.
+/// Bytes a particle needs at most: state, plans, lists of neighbours, a snapshot and a checkpoint being written. Twice what was
+/// measured: docs/reliability.md.
 const PARTICLE: f64 = 1500.0;
 /// What the program itself and the drawing of pictures need.
 const PROGRAM: f64 = 100e6;

@@ -1,7 +1,7 @@
 //! A run on its way: advanced, pictured, kept in checkpoints, and written down.
 
 use std::process::ExitCode;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use corpuscle_core::Failure;
 use corpuscle_experiments::Simulation;
@@ -164,7 +164,7 @@ impl Session {
 
     /// Writes a checkpoint, and what has been measured so far.
     fn keep(&mut self, progress: &Progress) -> Result<(), Trouble> {
-        let wall = self.wall + progress.wall();
+        let (clock, wall) = (Instant::now(), self.wall + progress.wall());
         let run = Run {
             scenario: self.scenario.to_toml(),
             time: self.simulation.time(),
@@ -178,6 +178,7 @@ impl Session {
             let record = Record::of(&self.scenario, simulation, simulation.end(), Ending::Running, wall);
             Ok(save_numbers(&record, &self.folder)?)
         });
+        self.keeper.took(clock.elapsed());
         kept.map_err(|trouble| match trouble {
             Trouble::Write(error) => self.keeper.lost(error, self.folder.path()),
             trouble => trouble,

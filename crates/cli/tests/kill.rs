@@ -28,7 +28,8 @@ const SYSTEMS: [(&str, &str); 2] = [
          [forces.lennard_jones]\nepsilon = 1.0\nsigma = 1.0\ncutoff = 2.5\n[[species]]\ncount = 800\nradius = 0.5\ntemperature = 0.7\n",
     ),
 ];
-const DURATIONS: [&str; 2] = ["30.0", "6.0"];
+/// How long each runs, and the time between its checkpoints, of which the last is at its end.
+const TIMES: [(&str, &str); 2] = [("30.0", "2.5"), ("6.0", "0.5")];
 
 fn corpuscle(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_corpuscle"));
@@ -37,8 +38,8 @@ fn corpuscle(folder: &Path, arguments: &[&str]) -> Command {
 }
 
 /// The run in this folder, or what goes on with it. A kill may come before there is a folder, or in the middle of a file.
-fn go_on(folder: &Path, out: &str, duration: &str) -> Command {
-    let often = ["--checkpoint-wall", "0.03", "--checkpoint-time", duration, "--checkpoints", "2", "--no-pictures", "--quiet"];
+fn go_on(folder: &Path, out: &str, interval: &str) -> Command {
+    let often = ["--checkpoint-time", interval, "--checkpoints", "2", "--no-pictures", "--quiet"];
     let begun = folder.join(out).join("scenario.toml").is_file();
     let what = if begun { &["resume", out][..] } else { &["run", "system.toml", "--force", "--out", out] };
     corpuscle(folder, &[what, &often].concat())
@@ -84,11 +85,11 @@ fn killed(mut child: Child, after: Duration) -> bool {
 /// So many kills of each engine, up to six a run.
 fn survive(kills: u32) {
     let mut random = Random::new(std::process::id().into(), 0);
-    for ((name, text), duration) in SYSTEMS.into_iter().zip(DURATIONS) {
+    for ((name, text), (duration, interval)) in SYSTEMS.into_iter().zip(TIMES) {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("system.toml"), text.replace("DURATION", duration)).unwrap();
         let started = Instant::now();
-        let status = go_on(folder.path(), "unbroken", duration).status().unwrap();
+        let status = go_on(folder.path(), "unbroken", interval).status().unwrap();
         assert!(matches!(status.code(), Some(0 | 3)), "{name}: {status}");
         let whole = started.elapsed();
         let expected = left_behind(&folder.path().join("unbroken"));
@@ -97,7 +98,7 @@ fn survive(kills: u32) {
             let out = format!("broken-{runs}");
             runs += 1;
             for _ in 0..6 {
-                let child = go_on(folder.path(), &out, duration).spawn().unwrap();
+                let child = go_on(folder.path(), &out, interval).spawn().unwrap();
                 if !killed(child, whole.mul_f64(0.5 * random.uniform())) {
                     break;
                 }
@@ -106,7 +107,7 @@ fn survive(kills: u32) {
             }
             let finished = folder.path().join(&out).join("report.html").is_file();
             if !finished {
-                let status = go_on(folder.path(), &out, duration).status().unwrap();
+                let status = go_on(folder.path(), &out, interval).status().unwrap();
                 assert!(matches!(status.code(), Some(0 | 3)), "{name}, run {runs}: {status}");
             }
             let found = left_behind(&folder.path().join(&out));

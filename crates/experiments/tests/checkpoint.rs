@@ -82,11 +82,8 @@ fn free_systems() {
 /// error is another matter.
 #[test]
 fn a_broken_invariant_is_seen() {
-    let hard = |overlap: f64, drift: f64| Honesty {
-        largest_overlap: Some(overlap),
-        energy_drift: Some(drift),
-        ..Honesty::default()
-    };
+    let hard =
+        |overlap: f64, drift: f64| Honesty { largest_overlap: Some(overlap), energy_drift: Some(drift), ..Honesty::default() };
     assert_eq!(hard(6e-16, 2.3e-12).broken(), None);
     assert!(hard(1e-3, 1e-12).broken().unwrap().contains("overlap is 1.0e-3"));
     assert!(hard(1e-15, 1e-3).broken().unwrap().contains("energy drift"));
