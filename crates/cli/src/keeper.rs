@@ -120,11 +120,11 @@ impl Keeper {
         self.policy.time.map_or(f64::INFINITY, |interval| next(interval).max(self.time.next_up()))
     }
 
-    /// Whether one is due now.
-    pub(crate) fn is_due(&self, simulation: &dyn Simulation) -> bool {
+    /// Whether one is due now that the simulation has been asked to advance to `time`: where it says it is may be off by rounding.
+    pub(crate) fn is_due(&self, simulation: &dyn Simulation, time: f64) -> bool {
         let long_enough = |seconds: f64| self.clock.elapsed() >= Duration::from_secs_f64(seconds.min(1e9)).max(LEAST * self.cost);
         self.policy.wall.is_some_and(long_enough)
-            || simulation.time() >= self.next_time()
+            || time >= self.next_time()
             || self.policy.work.is_some_and(|interval| simulation.honesty().work / interval > self.work / interval)
     }
 
@@ -134,11 +134,11 @@ impl Keeper {
         wall.is_some() || time.is_some() || work.is_some()
     }
 
-    /// Writes one.
-    pub(crate) fn write(&mut self, run: &Run, simulation: &dyn Simulation) -> Result<(), Trouble> {
+    /// Writes one, of a simulation that has been asked to advance to `time`.
+    pub(crate) fn write(&mut self, run: &Run, simulation: &dyn Simulation, time: f64) -> Result<(), Trouble> {
         let bytes = bytes(run, simulation).map_err(|fault| Trouble::Fault(format!("the state cannot be written down: {fault}")))?;
         self.checkpoints.write(&bytes, self.policy.keep)?;
-        (self.time, self.newest) = (simulation.time(), Some(simulation.time()));
+        (self.time, self.newest) = (time, Some(simulation.time()));
         self.work = if self.policy.work.is_some() { simulation.honesty().work } else { 0 };
         Ok(())
     }

@@ -93,7 +93,7 @@ impl Session {
     /// Runs to the end, or as far as it gets, and writes everything down.
     pub(crate) fn conduct(mut self) -> Result<ExitCode, Trouble> {
         let mut artist = if self.keeper.policy().pictures { artist() } else { None };
-        let end = self.scenario.duration.unwrap_or_else(|| self.simulation.end());
+        let end = self.end();
         let mut progress = Progress::new(self.simulation.as_ref(), end, self.quiet, Stop::listen());
         let way = self.go(&mut progress, end, &mut artist);
         progress.finish();
@@ -113,6 +113,11 @@ impl Session {
         let record = Record { pictures, ..Record::of(&self.scenario, self.simulation.as_ref(), end, ending, wall) };
         save(&record, &self.folder).map_err(|error| self.keeper.lost(error, self.folder.path()))?;
         self.conclude(&record)
+    }
+
+    /// Physical time at which it ends.
+    fn end(&self) -> f64 {
+        self.scenario.duration.unwrap_or_else(|| self.simulation.end())
     }
 
     /// The way to the end.
@@ -145,7 +150,7 @@ impl Session {
                 return Err(Halt::Signal);
             }
             progress.slice(self.simulation.as_mut(), to.min(self.keeper.next_time()))?;
-            if self.keeper.is_due(self.simulation.as_ref()) {
+            if self.keeper.is_due(self.simulation.as_ref(), progress.now()) {
                 self.hold_to_invariants()?;
                 self.keep(progress).map_err(Halt::Trouble)?;
             }
@@ -174,8 +179,8 @@ impl Session {
             policy: self.keeper.policy().clone(),
         };
         let simulation = self.simulation.as_ref();
-        let kept = self.keeper.write(&run, simulation).and_then(|()| {
-            let record = Record::of(&self.scenario, simulation, simulation.end(), Ending::Running, wall);
+        let kept = self.keeper.write(&run, simulation, progress.now()).and_then(|()| {
+            let record = Record::of(&self.scenario, simulation, self.end(), Ending::Running, wall);
             Ok(save_numbers(&record, &self.folder)?)
         });
         self.keeper.took(clock.elapsed());

@@ -158,9 +158,9 @@ fn signal(child: &Child, name: &str) {
 #[test]
 fn the_first_signal_leaves_a_checkpoint_and_a_report_and_the_run_goes_on() {
     let folder = prepared();
-    for name in ["-INT", "-TERM"] {
+    for name in ["INT", "TERM"] {
         let child = start(folder.path(), name);
-        signal(&child, name);
+        signal(&child, &format!("-{name}"));
         let output = child.wait_with_output().unwrap();
         assert_eq!(output.status.code(), Some(1));
         assert!(complaint(&output).contains(&format!("to go on: corpuscle resume {name}")), "{}", complaint(&output));
