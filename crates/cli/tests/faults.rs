@@ -196,8 +196,9 @@ impl Disk {
     fn mount(path: &Path) -> Option<Self> {
         fs::create_dir(path).unwrap();
         let script = format!("mount -t tmpfs -o size=4m tmpfs '{}' && echo mounted && exec sleep 600", path.display());
-        let holder = Command::new("unshare").args(["--user", "--map-root-user", "--mount", "sh", "-c", &script]);
-        let mut holder = { holder }.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().ok()?;
+        let mut command = Command::new("unshare");
+        command.args(["--user", "--map-root-user", "--mount", "sh", "-c", &script]).stdout(Stdio::piped()).stderr(Stdio::null());
+        let mut holder = command.spawn().ok()?;
         let mut line = String::new();
         std::io::BufRead::read_line(&mut std::io::BufReader::new(holder.stdout.take()?), &mut line).ok()?;
         if line.trim() == "mounted" {
