@@ -2,7 +2,7 @@
 #   make run    install what is missing, build, run the five experiments
 #   make test   the same, then every test
 .DEFAULT_GOAL := help
-.PHONY: help run test soak lint bench setup setup-test clean
+.PHONY: help run test soak kill fuzz lint bench setup setup-test clean
 
 CARGO ?= cargo
 OUT   ?= results
@@ -21,6 +21,13 @@ test: setup-test ## Every test: units, physics against theory, pictures, the com
 soak: ## An hour or so: 10^9 collisions, 10^8 contacts of grains, 10^5 periods of three bodies; nothing may drift, sink or stall
 	$(CARGO) test --release --locked -p corpuscle-event --test soak -- --ignored --nocapture --test-threads=1
 	$(CARGO) test --release --locked -p corpuscle-time --test soak -- --ignored --nocapture --test-threads=1
+
+kill: setup-test ## A quarter of an hour: 200 kills at random moments, each run resumed to the same bits
+	$(CARGO) test --release --locked -p corpuscle --test kill -- --ignored --nocapture
+
+fuzz: setup-test ## Ten minutes or so: strangers' files, read or refused; tens of thousands of random systems, all invariants on
+	FUZZ_FACTOR=30 $(CARGO) test --release --locked -p corpuscle-event --test invariants
+	FUZZ_CASES=200000 PROPTEST_CASES=20000 $(CARGO) test --release --locked -p corpuscle-io -- --nocapture
 
 lint: ## Format and house rules
 	$(CARGO) fmt --all --check

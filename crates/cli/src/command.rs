@@ -4,12 +4,16 @@ pub(crate) mod bench;
 pub(crate) mod check;
 pub(crate) mod list;
 pub(crate) mod record;
+pub(crate) mod resume;
 pub(crate) mod run;
+pub(crate) mod schema;
 mod target;
 pub(crate) mod view;
 
 use clap::Args;
 use corpuscle_io::{Refusal, Registry, Scenario};
+
+use crate::memory;
 
 /// What to run, and how it differs from its defaults.
 #[derive(Args)]
@@ -35,6 +39,7 @@ impl Subject {
         if let Some(seed) = self.seed {
             scenario.settings.seed = seed;
         }
+        memory::admit(&scenario)?;
         Ok(scenario)
     }
 }
@@ -62,7 +67,7 @@ fn physical_time(text: &str) -> Result<f64, String> {
 }
 
 /// Reads a number above zero.
-fn positive(text: &str) -> Result<f64, String> {
+pub(crate) fn positive(text: &str) -> Result<f64, String> {
     text.trim()
         .parse()
         .ok()

@@ -6,12 +6,16 @@
 
 mod command;
 mod console;
+mod keeper;
+mod memory;
 mod picture;
 mod progress;
+mod session;
 mod signal;
 mod table;
 mod trouble;
 mod usage;
+mod verdict;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
@@ -19,7 +23,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use corpuscle_io::Registry;
 
-use command::{bench, check, list, record, run, view};
+use command::{bench, check, list, record, resume, run, schema, view};
 use trouble::Trouble;
 
 /// A physics laboratory: exact hard-particle dynamics, soft particles, gravity and waves, measured beside theory.
@@ -36,6 +40,8 @@ enum Task {
     List(list::Arguments),
     /// Run an experiment or a scenario file, print its checks, and write its report.
     Run(run::Arguments),
+    /// Go on with a run that was interrupted, from its newest checkpoint, to the same end to the last bit.
+    Resume(resume::Arguments),
     /// Watch an experiment or a scenario file in a window, or save what the window would show.
     View(view::Arguments),
     /// Record a clip: .mp4, .gif, or a folder of pictures. Needs no display.
@@ -44,6 +50,8 @@ enum Task {
     Bench(bench::Arguments),
     /// Validate a scenario file and say what it would run, without running it.
     Check(check::Arguments),
+    /// Print the JSON Schema of scenario files, for editors that complete and check them.
+    Schema(schema::Arguments),
 }
 
 /// Runs the command with the arguments of the process.
@@ -81,10 +89,12 @@ impl Command {
             }
             Some(Task::List(arguments)) => list::list(arguments, registry),
             Some(Task::Run(arguments)) => run::run(arguments, registry),
+            Some(Task::Resume(arguments)) => resume::resume(arguments, registry),
             Some(Task::View(arguments)) => view::view(arguments, registry),
             Some(Task::Record(arguments)) => record::record(arguments, registry),
             Some(Task::Bench(arguments)) => bench::bench(arguments),
             Some(Task::Check(arguments)) => check::check(arguments, registry),
+            Some(Task::Schema(arguments)) => schema::schema(arguments, registry),
         }
     }
 }

@@ -40,6 +40,14 @@ impl Progress {
             if self.stop.asked() {
                 return Ok(false);
             }
+            self.slice(simulation, to)?;
+        }
+        Ok(true)
+    }
+
+    /// Advances by one slice, and not beyond `to`.
+    pub(crate) fn slice(&mut self, simulation: &mut dyn Simulation, to: f64) -> Result<(), Failure> {
+        if self.now < to {
             let next = (self.now + self.slice).max(self.now.next_up()).min(to);
             let started = Instant::now();
             let outcome = simulation.advance(next);
@@ -55,7 +63,12 @@ impl Progress {
             self.bar.set_position((PARTS * ((self.now - self.start) / (self.end - self.start)).clamp(0.0, 1.0)) as u64);
             self.bar.set_message(format!("t = {}", corpuscle_io::number::significant(self.now, 4)));
         }
-        Ok(true)
+        Ok(())
+    }
+
+    /// Physical time reached.
+    pub(crate) fn now(&self) -> f64 {
+        self.now
     }
 
     /// Whether a signal has come.

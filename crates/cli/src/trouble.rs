@@ -1,8 +1,10 @@
 //! Why a command ends early, and with which exit code.
 
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use corpuscle_core::Failure;
+use corpuscle_io::number::significant;
 use corpuscle_io::{Refusal, WriteError};
 use corpuscle_render::RenderError;
 
@@ -21,6 +23,22 @@ pub(crate) enum Trouble {
     /// Something could not be written.
     #[error(transparent)]
     Write(#[from] WriteError),
+    /// Something could not be written, but a checkpoint is there.
+    #[error("{error}{}", to_go_on(*.time, .folder))]
+    Lost {
+        /// What could not be written.
+        error: WriteError,
+        /// Physical time of the newest checkpoint.
+        time: Option<f64>,
+        /// Folder of the run.
+        folder: PathBuf,
+    },
+    /// The run ended before its end.
+    #[error("{0}")]
+    Stopped(String),
+    /// Something went wrong that cannot.
+    #[error("{0}")]
+    Fault(String),
     /// Something could not be drawn.
     #[error("{}{}", .0, remedy(.0))]
     Render(#[from] RenderError),
@@ -43,6 +61,14 @@ impl Trouble {
             _ => ExitCode::from(1),
         }
     }
+}
+
+/// How to go on when something could not be written.
+fn to_go_on(time: Option<f64>, folder: &Path) -> String {
+    let folder = folder.display();
+    time.map_or_else(String::new, |time| {
+        format!("; the checkpoint of t = {} is intact: corpuscle resume {folder}", significant(time, 5))
+    })
 }
 
 /// What may help when the driver gives no context: its own words name no package.

@@ -40,7 +40,7 @@ fn every_experiment_is_listed_and_its_defaults_are_valid() {
         assert!(text.contains(name));
         let output = corpuscle(folder.path(), &["check", name]);
         assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
-        assert!(String::from_utf8(output.stdout).unwrap().ends_with("Valid. Nothing was run.\n"));
+        assert!(String::from_utf8(output.stdout).unwrap().ends_with("Valid. Nothing was written.\n"));
     }
     for name in ["brownian", "entropy", "ideal-gas", "three-body", "wave"] {
         assert!(names.contains(&name), "{name} is not listed");

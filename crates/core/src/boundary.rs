@@ -18,7 +18,7 @@ use std::ops::ControlFlow;
 use crate::{Invalid, Particles, Vector};
 
 /// What happens at the two faces across one axis.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Axis {
     /// A particle that leaves through one face enters through the other.
     Periodic,
@@ -38,17 +38,19 @@ pub enum Axis {
 /// assert_eq!(room.volume(), 40.0);
 /// assert_eq!(room.accessible_volume(0.5), 27.0);
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Boundary<const D: usize> {
     /// Lower corner.
     pub lower: Vector<D>,
     /// Upper corner.
     pub upper: Vector<D>,
     /// Kind of the faces across each axis.
+    #[serde(with = "crate::array")]
     pub axes: [Axis; D],
     /// Thin hard plates inside the box.
     pub partitions: Vec<Partition>,
     /// The lower and upper face across each axis: what they do where they are walls.
+    #[serde(with = "crate::array")]
     pub faces: [[Face; 2]; D],
     /// Fixed round bodies.
     pub obstacles: Vec<Obstacle<D>>,

@@ -3,6 +3,7 @@
 //! This crate does no input or output, starts no thread and knows no picture. Units are reduced: mass, length and
 //! `k_B T` set the scale, so a temperature is an energy and a pressure is an energy per volume.
 
+pub mod array;
 pub mod boundary;
 pub mod engine;
 pub mod instructions;

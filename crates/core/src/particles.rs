@@ -5,7 +5,7 @@ use crate::{Invalid, Vector};
 /// Positions, velocities and properties of `N` particles at one instant, one array a property.
 ///
 /// Every array has the same length. Masses and radii do not change while an engine runs.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Particles<const D: usize> {
     /// Positions of the centres.
     pub position: Vec<Vector<D>>,

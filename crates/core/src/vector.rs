@@ -13,9 +13,10 @@ use std::ops::{Add, AddAssign, Div, Index, IndexMut, Mul, Neg, Sub, SubAssign};
 /// assert_eq!(a.norm(), 5.0);
 /// assert_eq!(2.0 * a - a, a);
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, bytemuck::TransparentWrapper)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::TransparentWrapper, serde::Serialize, serde::Deserialize)]
 #[repr(transparent)]
-pub struct Vector<const D: usize>(pub [f64; D]);
+#[serde(transparent)]
+pub struct Vector<const D: usize>(#[serde(with = "crate::array")] pub [f64; D]);
 
 impl<const D: usize> Vector<D> {
     /// The null vector.

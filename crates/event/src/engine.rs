@@ -73,12 +73,12 @@ pub struct EventDriven<const D: usize> {
     pub(crate) now: f64,
     pub(crate) time: f64,
     pub(crate) counts: Counts,
-    next_epoch: u64,
+    pub(crate) next_epoch: u64,
     /// The last month of the calendar that memory was asked for.
     pub(crate) asked_for: u64,
     /// When partitions and faces are going to go, the next one last; and when the last one went.
-    removals: Vec<f64>,
-    removed: f64,
+    pub(crate) removals: Vec<f64>,
+    pub(crate) removed: f64,
 }
 
 /// The species of a particle, and how often it went around the periodic box: rarely needed.
@@ -98,7 +98,7 @@ impl<const D: usize> EventDriven<D> {
     /// When box, particles or rules make no sense, particles overlap, or one has no mass: names what is wrong.
     pub fn new(boundary: Boundary<D>, particles: Particles<D>, rules: Rules<D>) -> Result<Self, Invalid> {
         boundary.validate_particles(&particles)?;
-        Self::start(boundary, particles, rules, None)
+        Self::start(boundary, &particles, rules, None)
     }
 
     /// An engine at time 0 whose spheres grow: at the time `t` their radii are `scale + rate t` of those of `particles`.
@@ -124,13 +124,24 @@ impl<const D: usize> EventDriven<D> {
             alone.push(particles.position[i], Vector::ZERO, 1.0, particles.radius[i], 0);
             boundary.validate_particles(&alone)?;
         }
-        Self::start(boundary, particles, Rules::default(), Some(Growth { scale, rate }))
+        Self::start(boundary, &particles, Rules::default(), Some(Growth { scale, rate }))
     }
 
-    #[allow(clippy::needless_pass_by_value, reason = "the engine takes the particles over")]
-    fn start(boundary: Boundary<D>, particles: Particles<D>, rules: Rules<D>, growth: Option<Growth>) -> Result<Self, Invalid> {
+    fn start(boundary: Boundary<D>, particles: &Particles<D>, rules: Rules<D>, growth: Option<Growth>) -> Result<Self, Invalid> {
+        let mut engine = Self::idle(boundary, particles, rules, growth)?;
+        engine.begin_anew();
+        Ok(engine)
+    }
+
+    /// An engine at time 0 that has no plans yet.
+    pub(crate) fn idle(
+        boundary: Boundary<D>,
+        particles: &Particles<D>,
+        rules: Rules<D>,
+        growth: Option<Growth>,
+    ) -> Result<Self, Invalid> {
         rules.validate()?;
-        rules.pair.validate_box(&boundary, &particles)?;
+        rules.pair.validate_box(&boundary, particles)?;
         if let Some(i) = particles.mass.iter().position(|&mass| mass <= 0.0) {
             return Err(Invalid::new(
                 format!("mass of particle {i}"),
@@ -181,7 +192,6 @@ impl<const D: usize> EventDriven<D> {
         };
         engine.next_epoch = engine.contacts_per_epoch();
         engine.count_thermal_contacts();
-        engine.begin_anew();
         Ok(engine)
     }
 
@@ -288,19 +298,25 @@ impl<const D: usize> EventDriven<D> {
             self.wrap(i);
         }
         self.sort();
+        self.find_neighbours(|_, position| position);
+        self.plan_all();
+    }
+
+    /// Looks for all neighbours. `centre` tells, from a particle's place in memory and its position now, around where it is
+    /// to be looked for.
+    pub(crate) fn find_neighbours(&mut self, centre: impl Fn(usize, Vector<D>) -> Vector<D>) {
         let (flights, now, field) = (&self.flights, self.now, self.rules.field);
         // To a search for neighbours particles are as large as their pair law reaches.
         let range = self.pairs.range();
         let wide = |flight: &Flight<D>| Flight { radius: range * flight.radius, ..*flight };
         let flights: Cow<[_]> = if range == 1.0 { flights.into() } else { flights.iter().map(wide).collect() };
-        let position = |i: usize| flights[i].position_at(now, field);
+        let position = |i: usize| centre(i, flights[i].position_at(now, field));
         let core = self.pairs.core();
         self.neighbours = Neighbours::new(&self.boundary, &flights, core, position, &self.images, &mut self.candidates);
         self.surfaces = Surfaces::new(&self.boundary, self.removed, &self.neighbours, &self.flights);
         if self.bonds_unknown {
             self.find_bonds();
         }
-        self.plan_all();
     }
 
     /// The number by which a particle is known outside, of the one stored at this place.
@@ -310,7 +326,7 @@ impl<const D: usize> EventDriven<D> {
     }
 
     /// Brings particles that are near each other in space near each other in memory.
-    fn sort(&mut self) {
+    pub(crate) fn sort(&mut self) {
         let place = |i: usize| place_on_curve(&self.boundary, self.flights[i].position_at(self.now, self.rules.field));
         let mut order: Vec<(u64, u32)> = (0..self.flights.len()).map(|i| (place(i), i as u32)).collect();
         order.sort_unstable_by_key(|&(place, i)| (place, self.plans[i as usize].id));
@@ -417,7 +433,7 @@ impl<const D: usize> EventDriven<D> {
 }
 
 /// Times after `now` at which a partition or a face goes, the earliest last.
-fn removals<const D: usize>(boundary: &Boundary<D>, now: f64) -> Vec<f64> {
+pub(crate) fn removals<const D: usize>(boundary: &Boundary<D>, now: f64) -> Vec<f64> {
     let plates = boundary.partitions.iter().filter_map(|plate| plate.removed_at);
     let faces = boundary.faces.iter().flatten().filter_map(|face| face.opened_at);
     let mut times: Vec<f64> = plates.chain(faces).filter(|&time| now < time && time.is_finite()).collect();

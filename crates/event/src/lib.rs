@@ -23,6 +23,7 @@
 mod access;
 mod ahead;
 mod calendar;
+mod checkpoint;
 mod collide;
 mod engine;
 mod grown;

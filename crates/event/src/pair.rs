@@ -12,7 +12,7 @@ use crate::search::{Neighbour, View};
 use bonds::Bonds;
 
 /// The law of pairs, the same for all of them; distances are in units of the contact distance `s = R1 + R2`.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Pair {
     /// Nothing beyond contact.
     #[default]
@@ -77,7 +77,7 @@ pub(crate) struct State {
 }
 
 /// Radii are `scale + rate t` of what they are going to be, at the time `t` from the epoch.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Growth {
     pub(crate) scale: f64,
     pub(crate) rate: f64,
@@ -124,6 +124,11 @@ impl State {
         if r.norm() < self.law.range() * s {
             self.bonds.set(ids.0, ids.1, true);
         }
+    }
+
+    /// How the spheres grow, if they do.
+    pub(crate) fn growth(&self) -> Option<Growth> {
+        self.growth
     }
 
     /// Forgets all bonds.

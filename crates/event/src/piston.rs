@@ -36,6 +36,15 @@ pub(crate) struct MovingPiston {
     stop_time: f64,
 }
 
+/// The motion of a piston without its plan.
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Kept {
+    pub(crate) state: Piston,
+    pub(crate) time: f64,
+    pub(crate) resting: bool,
+    pub(crate) above: Vec<bool>,
+}
+
 /// A contact with the particle stored at this place, if its stamp is still the same.
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
@@ -66,6 +75,19 @@ impl MovingPiston {
             horizon: f64::INFINITY,
             stop_time: f64::INFINITY,
         }
+    }
+
+    /// A piston that goes on as it was.
+    pub(crate) fn resumed(kept: Kept) -> Self {
+        let Kept { state, time, resting, above } = kept;
+        let fresh = Self::new::<1>(state, time, std::iter::empty());
+        Self { resting, known: vec![0; above.len()], above, ..fresh }
+    }
+
+    /// What it needs to go on.
+    pub(crate) fn kept(&self) -> Kept {
+        let Self { state, time, resting, ref above, stamp: _, known: _, candidates: _, horizon: _, stop_time: _ } = *self;
+        Kept { state, time, resting, above: above.clone() }
     }
 
     fn acceleration(&self) -> f64 {

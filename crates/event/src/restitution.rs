@@ -3,7 +3,7 @@
 use corpuscle_core::Invalid;
 
 /// Coefficient of restitution `e`: the normal relative speed after a contact is `e` times that before.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Restitution {
     /// The same at all speeds, in `[0, 1]`. 1 is elastic.
     Constant(f64),

@@ -5,7 +5,7 @@ use corpuscle_core::{Invalid, Vector};
 use crate::{Pair, Restitution};
 
 /// The law of contact and the field in which particles fly.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Rules<const D: usize> {
     /// How much of the normal relative speed a contact leaves: of particles, with walls without a temperature, partitions,
     /// obstacles and the piston alike.
@@ -56,7 +56,7 @@ impl<const D: usize> Rules<D> {
 }
 
 /// What an engine has done so far: physics first, then the work it cost.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Counts {
     /// Collisions between two particles.
     pub collisions: u64,

@@ -149,8 +149,13 @@ fn returns_when_reversed<const D: usize>(system: (Boundary<D>, Particles<D>, Rul
     }
 }
 
+/// So many random systems as a rule, and as many times more as `make fuzz` asks for.
+fn cases(usual: u32) -> u32 {
+    usual * std::env::var("FUZZ_FACTOR").ok().and_then(|factor| factor.parse().ok()).unwrap_or(1)
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(150) })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(cases(150)) })]
     #[test]
     fn discs_hold_their_invariants(seed in any::<u64>()) { holds_its_invariants::<2>(random_system(seed)); }
     #[test]
@@ -166,7 +171,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(40) })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(cases(40)) })]
     #[test]
     fn dense_discs_hold_their_invariants(seed in any::<u64>()) { holds_its_invariants::<2>(dense_system(seed)); }
     #[test]
@@ -182,7 +187,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(60) })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(cases(60)) })]
     #[test]
     fn discs_of_all_sizes_hold_their_invariants(seed in any::<u64>()) { holds_its_invariants::<2>(system_of_sizes(seed)); }
     #[test]

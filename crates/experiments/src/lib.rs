@@ -8,6 +8,7 @@ mod ensemble;
 mod experiments;
 pub mod free;
 mod gas;
+mod horizon;
 pub mod parameter;
 pub mod simulation;
 

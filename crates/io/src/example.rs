@@ -1,5 +1,6 @@
 //! An experiment for the tests of this crate: a harmonic oscillator, moved exactly, its period and energy measured.
 
+use corpuscle_checkpoint::{Resume, resume};
 use corpuscle_core::{Failure, Invalid};
 use corpuscle_experiments::{Experiment, Honesty, Kind, Parameter, Settings, Simulation, Table};
 use corpuscle_observe::chart::Axis;
@@ -57,6 +58,8 @@ struct Oscillator {
     time: f64,
 }
 
+resume!(Oscillator { values: [time], set_up: [settings] });
+
 impl Simulation for Oscillator {
     fn time(&self) -> f64 {
         self.time
@@ -89,6 +92,12 @@ impl Simulation for Oscillator {
     }
     fn honesty(&self) -> Honesty {
         Honesty { engine: "exact".into(), work: 12345, work_unit: "steps", energy_drift: Some(1e-15), ..Honesty::default() }
+    }
+    fn state(&self) -> Option<&dyn Resume> {
+        Some(self)
+    }
+    fn state_mut(&mut self) -> Option<&mut dyn Resume> {
+        Some(self)
     }
     fn tables(&self) -> Vec<Table> {
         vec![Table { name: "turning-points".into(), columns: vec!["time_s".into()], rows: vec![vec![0.1 + 0.2], vec![f64::NAN]] }]

@@ -2,16 +2,19 @@
 //!
 //! [`Scenario`] says what to run, [`Record`] what came of it; the other modules write a record down.
 
+pub mod checkpoint;
 pub mod csv;
 pub mod number;
 pub mod record;
 pub mod refusal;
 pub mod report;
 pub mod scenario;
+pub mod schema;
 pub mod summary;
 pub mod write;
 pub mod xyz;
 
+pub use checkpoint::{Checkpoint, CheckpointError, Checkpoints};
 pub use record::{Ending, Picture, Record};
 pub use refusal::{Origin, Place, Refusal};
 pub use scenario::{Registry, Scenario};

@@ -11,6 +11,8 @@ use crate::Scenario;
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Ending {
+    /// It is on its way: what stands there was true when the last checkpoint was written.
+    Running,
     /// It reached its end.
     Finished,
     /// It was stopped before its end, by a signal.
@@ -23,6 +25,7 @@ impl Ending {
     /// One word for `summary.json`.
     pub fn word(&self) -> &'static str {
         match self {
+            Self::Running => "running",
             Self::Finished => "finished",
             Self::Interrupted => "interrupted",
             Self::Failed(_) => "failed",

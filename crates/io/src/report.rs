@@ -80,6 +80,7 @@ fn header(record: &Record, title: &str) -> String {
     );
     let stopped = match &record.ending {
         Ending::Finished => None,
+        Ending::Running => Some("This run is on its way.".to_owned()),
         Ending::Interrupted => Some("This run was interrupted.".to_owned()),
         Ending::Failed(failure) => Some(format!("This run could not be finished: {failure}.")),
     };
@@ -251,6 +252,16 @@ fn honesty(record: &Record) -> String {
         ("Angular momentum", share(honesty.angular_momentum_drift), "largest relative drift seen"),
         ("Overlap", share(honesty.largest_overlap), "deepest seen, over the contact distance"),
         ("Stability number", share(honesty.stability_number), "time step times highest frequency"),
+        (
+            "Rejected events",
+            honesty.rejected_events.map(grouped),
+            "obsolete when their time came, since a partner had collided meanwhile",
+        ),
+        (
+            "Precision horizon",
+            honesty.precision_horizon.map(short),
+            "time until which single paths are known; averages hold beyond",
+        ),
         ("Rate", record.rate().map(|rate| format!("{} a second", brief(rate))), "on the clock, on this machine"),
     ];
     let mut out = String::from(

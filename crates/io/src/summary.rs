@@ -83,6 +83,8 @@ struct Quality {
     angular_momentum_drift: Option<f64>,
     largest_overlap: Option<f64>,
     stability_number: Option<f64>,
+    rejected_events: Option<u64>,
+    precision_horizon: Option<f64>,
 }
 
 impl Quality {
@@ -92,6 +94,8 @@ impl Quality {
             angular_momentum_drift: honesty.angular_momentum_drift,
             largest_overlap: honesty.largest_overlap,
             stability_number: honesty.stability_number,
+            rejected_events: honesty.rejected_events,
+            precision_horizon: honesty.precision_horizon,
         }
     }
 }

@@ -4,6 +4,8 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use crate::Checkpoints;
+
 /// A file or folder that could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
@@ -74,6 +76,40 @@ impl Folder {
         Ok(Self { path })
     }
 
+    /// A folder that a run has written into before, and goes on to. What that run was writing when it ended is removed.
+    ///
+    /// # Errors
+    /// When it is not there.
+    pub fn again(path: &Path) -> Result<Self, WriteError> {
+        let here = fs::read_dir(path).map_err(WriteError::system(path))?;
+        let below = ["checkpoints", "pictures"].into_iter().filter_map(|name| fs::read_dir(path.join(name)).ok());
+        for entry in below.chain([here]).flatten().flatten() {
+            let name = entry.file_name();
+            let name = name.to_string_lossy();
+            if name.starts_with(PREFIX) && name.ends_with(SUFFIX) {
+                // A leftover does no harm.
+                let _ = fs::remove_file(entry.path());
+            }
+        }
+        Ok(Self { path: path.into() })
+    }
+
+    /// Removes what an earlier run left here that could be taken for the results of the next one, or for its state.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub fn clear(&self) -> Result<(), WriteError> {
+        Checkpoints::of(&self.path).clear();
+        for name in ["summary.json", "report.html"] {
+            let path = self.path.join(name);
+            match fs::remove_file(&path) {
+                Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(WriteError::system(&path)(error)),
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
     /// Where it is.
     pub fn path(&self) -> &Path {
         &self.path
@@ -82,29 +118,40 @@ impl Folder {
     /// Writes a file into the folder, whole or not at all.
     ///
     /// # Errors
-    /// When the system refuses.
+    /// When the system refuses; a folder that has vanished is not made anew.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), WriteError> {
         let path = self.path.join(name);
-        if let Some(parent) = path.parent() {
-            fs::create_dir_all(parent).map_err(WriteError::system(parent))?;
+        if let Some(parent) = path.parent().filter(|&parent| parent != self.path) {
+            match fs::create_dir(parent) {
+                Err(error) if error.kind() != io::ErrorKind::AlreadyExists => return Err(WriteError::system(parent)(error)),
+                _ => {}
+            }
         }
         atomically(&path, bytes)
     }
 }
 
-/// Writes a file, whole or not at all: into a temporary file beside it, flushed to the disk, then renamed.
+/// How temporary files are called.
+const PREFIX: &str = ".corpuscle-";
+const SUFFIX: &str = ".tmp";
+
+/// Writes a file, whole or not at all: into a temporary file beside it, flushed to the disk, then renamed, and the name
+/// flushed as well.
 ///
 /// # Errors
 /// When the system refuses; what stood there before then still does.
 pub fn atomically(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let write = || -> io::Result<()> {
-        let mut file = readable_by_others(tempfile::Builder::new().prefix(".corpuscle-").suffix(".tmp"))
+        let mut file = readable_by_others(tempfile::Builder::new().prefix(PREFIX).suffix(SUFFIX))
             .tempfile_in(folder)
             .map_err(without_the_temporary_name)?;
         file.write_all(bytes)?;
         file.as_file().sync_all()?;
         file.persist(path)?;
+        // Elsewhere a folder cannot be opened; its file system keeps names in order by itself.
+        #[cfg(unix)]
+        fs::File::open(folder)?.sync_all()?;
         Ok(())
     };
     write().map_err(WriteError::system(path))

@@ -9,7 +9,7 @@ use crate::blocking::blocking;
 use crate::time_blocks::TimeBlocks;
 
 /// Collision rate per particle: twice the pairs' collisions over `N t`, since each involves two particles.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct CollisionRate {
     collisions: TimeBlocks,
     particles: f64,

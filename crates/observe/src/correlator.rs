@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use corpuscle_checkpoint::resume;
 use corpuscle_core::Vector;
 
 use crate::Curves;
@@ -23,7 +24,7 @@ pub(crate) struct Correlator<const D: usize> {
     pushed: u64,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 struct Level<const D: usize> {
     /// Newest last.
     samples: VecDeque<Vec<Vector<D>>>,
@@ -31,6 +32,8 @@ struct Level<const D: usize> {
     sums: Vec<Vec<f64>>,
     counts: Vec<u64>,
 }
+
+resume!(Correlator<const D> { values: [levels, first, pushed], set_up: [interval, kernel, reach, most_levels] });
 
 impl<const D: usize> Correlator<D> {
     /// Lags 0, 1, ... `reach` times the interval, then the upper half of that range doubled, again and again.

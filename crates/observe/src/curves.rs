@@ -4,7 +4,7 @@ use crate::{Estimate, fit};
 
 /// One curve a replica, `y[replica][k]` at `x[k]`. Replicas are what errors come from: points of one curve at different
 /// abscissae are strongly correlated, so a fitted slope takes its error from the spread of the replicas' own slopes.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Curves {
     /// Abscissae, ascending.
     pub x: Vec<f64>,

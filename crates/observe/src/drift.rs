@@ -2,12 +2,12 @@
 
 use std::ops::ControlFlow;
 
-use corpuscle_core::{Observer, Particles};
+use corpuscle_core::{Observer, Particles, Vector};
 
 /// Largest `|x - x_0| / scale` seen of a quantity that should keep its value.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Drift<const K: usize> {
-    reference: Option<([f64; K], f64)>,
+    reference: Option<(Vector<K>, f64)>,
     largest: f64,
 }
 
@@ -20,8 +20,8 @@ impl<const K: usize> Drift<K> {
     /// Sees a value. The first becomes the reference, together with its scale; where the scale is zero, departures are
     /// absolute. A value that is not a number is the largest drift there is.
     pub fn see(&mut self, value: [f64; K], scale: f64) {
-        let (reference, scale) = *self.reference.get_or_insert((value, if scale > 0.0 { scale } else { 1.0 }));
-        let distance = value.iter().zip(reference).map(|(x, x0)| (x - x0) * (x - x0)).sum::<f64>().sqrt() / scale;
+        let (reference, scale) = *self.reference.get_or_insert((Vector(value), if scale > 0.0 { scale } else { 1.0 }));
+        let distance = value.iter().zip(reference.0).map(|(x, x0)| (x - x0) * (x - x0)).sum::<f64>().sqrt() / scale;
         // f64::max would let a value that is not a number pass unseen.
         self.largest = self.largest.max(if distance.is_nan() { f64::INFINITY } else { distance });
     }
@@ -41,7 +41,7 @@ impl Drift<1> {
 
 /// Drift of kinetic energy, momentum and angular momentum of particles without forces between collisions. For forces, feed
 /// the total energy to a [`Drift`] of one's own.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Conservation {
     /// Kinetic energy, relative to its start.
     pub energy: Drift<1>,

@@ -11,7 +11,7 @@ use crate::distribution::normal_score_of_student;
 ///
 /// Errors propagate to first order through the operators, both operands being independent; the degrees of freedom then
 /// combine as Welch and Satterthwaite have it (doi:10.2307/3002019). For correlated operands use [`Estimate::jackknife`].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, serde::Deserialize)]
 pub struct Estimate {
     /// The value.
     pub mean: f64,

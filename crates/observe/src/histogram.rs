@@ -4,7 +4,7 @@ use crate::distribution::normal_score_of_chi_squared;
 use crate::{Check, Estimate};
 
 /// Counts in equal bins from `lower` to `upper`, and of what lies outside.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Histogram {
     lower: f64,
     width: f64,

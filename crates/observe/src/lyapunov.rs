@@ -8,7 +8,7 @@ use crate::fit::{self, Line};
 ///
 /// It grows like `lambda t` from when the fastest direction has taken over until the separation is no longer small against
 /// the system, where it saturates. The exponent is read between the two.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Separation {
     limit: f64,
     times: Vec<f64>,

@@ -1,5 +1,6 @@
 //! Mean squared displacement and diffusion.
 
+use corpuscle_checkpoint::resume;
 use corpuscle_core::Vector;
 
 use crate::correlator::Correlator;
@@ -12,22 +13,25 @@ const REACH: usize = 16;
 /// octave, one curve a tracer. Tracers count as replicas: far apart in a dilute bath they are independent; otherwise join
 /// the curves of independent runs.
 #[derive(Clone, Debug)]
-pub struct MeanSquaredDisplacement<const D: usize>(Correlator<D>);
+pub struct MeanSquaredDisplacement<const D: usize> {
+    correlator: Correlator<D>,
+}
+resume!(MeanSquaredDisplacement<const D> { values: [], parts: [correlator] });
 
 impl<const D: usize> MeanSquaredDisplacement<D> {
     /// Samples will come at this interval.
     pub fn new(interval: f64) -> Self {
-        Self(Correlator::new(interval, REACH, 48, |then, now| (now - then).norm_squared()))
+        Self { correlator: Correlator::new(interval, REACH, 48, |then, now| (now - then).norm_squared()) }
     }
 
     /// The next sample: unwrapped positions ([`Unwrap`](crate::Unwrap)), always the same tracers.
     pub fn push(&mut self, positions: &[Vector<D>]) {
-        self.0.push(positions);
+        self.correlator.push(positions);
     }
 
     /// The mean squared displacement of each tracer against the lag, starting with zero at lag zero.
     pub fn curves(&self) -> Curves {
-        self.0.curves()
+        self.correlator.curves()
     }
 }
 

@@ -14,9 +14,11 @@ use crate::time_blocks::TimeBlocks;
 /// `prod_(l != k) (L_l - 2 R)` where the other axes have walls, so that `P V_acc = N k T` holds for an ideal gas of centres.
 /// Each hit carries an independent impulse; its relative standard error from `H` hits is `sqrt((4/pi) / H)` in an ideal gas,
 /// whatever the dimension. Partitions are not counted.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct WallPressure<const D: usize> {
+    #[serde(with = "corpuscle_core::array")]
     faces: [[TimeBlocks; 2]; D],
+    #[serde(with = "corpuscle_core::array")]
     areas: [f64; D],
     hits: u64,
 }
@@ -114,7 +116,7 @@ impl<const D: usize> Observer<D> for WallPressure<D> {
 /// A [`Contact`] gives its first particle the impulse `-J n`, where `n` points to the second: `r_i - r_j = -s n`, and the
 /// term is `+J s`, with `s` the distance of the centres. `k T = 2 E_kin / f` with `f = D (N - 1)` degrees of freedom in a
 /// periodic box, `D N` between walls. Between walls `V` is the volume accessible to the centres.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct VirialPressure<const D: usize> {
     virial: TimeBlocks,
     ideal: f64,

@@ -10,7 +10,7 @@ use crate::blocking::blocking;
 
 /// `g(r)`: pairs at distance `r`, over their number were all `N (N - 1)/2` pairs independent. Periodic boxes, up to half the
 /// shortest side. Standard errors from blocking over the samples.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct RadialDistribution<const D: usize> {
     boundary: Boundary<D>,
     width: f64,

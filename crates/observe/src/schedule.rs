@@ -13,7 +13,7 @@
 /// assert_eq!(times, [0.0, 0.1, 0.2]);
 /// assert_eq!(schedule.due(0.3), None); // 3 x 0.1 is a hair above 0.3
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Schedule {
     interval: f64,
     next: u64,

@@ -5,7 +5,7 @@ const MOST_BLOCKS: usize = 1 << 14;
 
 /// What happened in each of the consecutive time blocks since the start. Where a run is stopped and continued has no
 /// influence: the block boundaries are multiples of the length, and only blocks that are over count.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct TimeBlocks {
     start: Option<f64>,
     length: f64,

@@ -1,5 +1,6 @@
 //! Velocity autocorrelation, initial friction and the Green-Kubo integral.
 
+use corpuscle_checkpoint::resume;
 use corpuscle_core::Vector;
 
 use crate::correlator::Correlator;
@@ -9,22 +10,26 @@ use crate::{Curves, Estimate};
 /// interval up to a longest lag, one curve a tracer. Tracers count as replicas, as for
 /// [`MeanSquaredDisplacement`](crate::MeanSquaredDisplacement).
 #[derive(Clone, Debug)]
-pub struct VelocityAutocorrelation<const D: usize>(Correlator<D>);
+pub struct VelocityAutocorrelation<const D: usize> {
+    correlator: Correlator<D>,
+}
+resume!(VelocityAutocorrelation<const D> { values: [], parts: [correlator] });
 
 impl<const D: usize> VelocityAutocorrelation<D> {
     /// Samples will come at this interval.
     pub fn new(interval: f64, longest_lag: f64) -> Self {
-        Self(Correlator::new(interval, (longest_lag / interval).round().max(2.0) as usize, 1, Vector::dot))
+        let reach = (longest_lag / interval).round().max(2.0) as usize;
+        Self { correlator: Correlator::new(interval, reach, 1, Vector::dot) }
     }
 
     /// The next sample: velocities of always the same tracers.
     pub fn push(&mut self, velocities: &[Vector<D>]) {
-        self.0.push(velocities);
+        self.correlator.push(velocities);
     }
 
     /// The autocorrelation of each tracer against the lag, starting with `<v^2>` at lag zero.
     pub fn curves(&self) -> Curves {
-        self.0.curves()
+        self.correlator.curves()
     }
 }
 

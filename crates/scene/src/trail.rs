@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use crate::Colour;
 
 /// One point of a trail.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct TrailPoint {
     /// Where the body was.
     pub position: [f64; 3],

@@ -25,7 +25,7 @@ pub struct Drive {
 }
 
 /// A function of time that drives something.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Signal {
     /// `A sin(omega t + phi)`, switched on smoothly (twice differentiable) over the time `ramp`; 0 switches at once.
     Sine {
@@ -101,7 +101,7 @@ fn switched_on(time: f64, ramp: f64) -> (f64, f64) {
 }
 
 /// One held or driven coordinate.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Held {
     pub(crate) particle: usize,
     pub(crate) axis: usize,

@@ -25,17 +25,17 @@ const KEPT_EVERY: u64 = 128;
 /// The engine only follows forces: two fast particles with a hard, narrow potential can pass through each other within a
 /// step. Where that must not happen, use the event-driven engine.
 pub struct TimeDriven<const D: usize> {
-    system: System<D>,
-    integrator: Integrator,
-    stepper: Stepper<D>,
-    steps: u64,
-    time: f64,
-    kept: Kept<D>,
+    pub(crate) system: System<D>,
+    pub(crate) integrator: Integrator,
+    pub(crate) stepper: Stepper<D>,
+    pub(crate) steps: u64,
+    pub(crate) time: f64,
+    pub(crate) kept: Kept<D>,
 }
 
 /// What is needed to repeat steps from.
 #[derive(Default)]
-struct Kept<const D: usize> {
+pub(crate) struct Kept<const D: usize> {
     steps: u64,
     position: Vec<Vector<D>>,
     velocity: Vec<Vector<D>>,
@@ -234,7 +234,7 @@ impl<const D: usize> TimeDriven<D> {
         Ok(())
     }
 
-    fn keep(&mut self) {
+    pub(crate) fn keep(&mut self) {
         let System { particles, images, acceleration, fresh, .. } = &self.system;
         self.kept.steps = self.steps;
         self.kept.position.clone_from(&particles.position);

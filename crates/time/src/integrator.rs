@@ -11,6 +11,7 @@ mod runge_kutta;
 mod thermal;
 mod wisdom_holman;
 
+use corpuscle_checkpoint::{Fault, Reader, Resume, Writer};
 use corpuscle_core::{Axis, Failure, Invalid};
 
 use crate::force::{not_negative, positive};
@@ -316,7 +317,10 @@ impl Integrator {
 }
 
 /// An integrator that chooses its steps and knows the trajectory between them.
-pub(crate) trait Adaptive<const D: usize>: Send {
+pub(crate) trait Adaptive<const D: usize>: Send + Resume {
+    /// How many particles it holds.
+    fn particle_count(&self) -> usize;
+
     /// Time up to which the trajectory is known.
     fn reached(&self) -> f64;
 
@@ -397,6 +401,26 @@ impl<const D: usize> Stepper<D> {
     /// Energy that is neither kinetic nor potential, but conserved together with these.
     pub(crate) fn energy(&self) -> f64 {
         if let Self::NoseHoover(chain) = self { chain.energy() } else { 0.0 }
+    }
+}
+
+/// What an integrator remembers from step to step beside the system; working memory is not written down.
+impl<const D: usize> Resume for Stepper<D> {
+    fn save(&self, out: &mut Writer) -> Result<(), Fault> {
+        match self {
+            Self::Adaptive(method) => method.save(out),
+            Self::NoseHoover(chain) => chain.save(out),
+            // Random numbers belong to the step and the particle: a bath remembers nothing.
+            Self::Composition(_) | Self::RungeKutta(_) | Self::WisdomHolman(_) | Self::Bath(_) => out.fields(0),
+        }
+    }
+
+    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), Fault> {
+        match self {
+            Self::Adaptive(method) => method.load(from),
+            Self::NoseHoover(chain) => chain.load(from),
+            Self::Composition(_) | Self::RungeKutta(_) | Self::WisdomHolman(_) | Self::Bath(_) => from.fields(0),
+        }
     }
 }
 

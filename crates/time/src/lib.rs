@@ -25,6 +25,7 @@
 // What a kernel calls must end up inside the function that has the instruction set, or it is not compiled for it.
 #![allow(clippy::inline_always)]
 
+mod checkpoint;
 mod constraint;
 mod engine;
 mod exact;

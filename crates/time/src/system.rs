@@ -1,5 +1,6 @@
 //! What an integrator moves: particles in a boundary under forces, with the few operations integrators are made of.
 
+use corpuscle_checkpoint::resume;
 use corpuscle_core::{Axis, Boundary, Contact, Failure, Invalid, Meeting, Particles, Party, Vector};
 
 use rayon::prelude::*;
@@ -31,6 +32,12 @@ pub(crate) struct System<const D: usize> {
     velocity_dependent: bool,
     estimate: Vec<Vector<D>>,
 }
+
+resume!(System<const D> {
+    values: [boundary, particles, held, acceleration, fresh, owed, remainder],
+    // Images are written down by the engine.
+    set_up: [images, forces, contacts, doubtful, velocity_dependent, estimate],
+});
 
 impl<const D: usize> System<D> {
     pub(crate) fn new(boundary: Boundary<D>, particles: Particles<D>, forces: Vec<Box<dyn Force<D>>>) -> Result<Self, Invalid> {

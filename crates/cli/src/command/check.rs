@@ -2,16 +2,23 @@
 
 use std::fmt::Write;
 use std::process::ExitCode;
+use std::sync::mpsc;
+use std::thread;
+use std::time::{Duration, Instant};
 
 use clap::Args;
-use corpuscle_experiments::{Parameter, Value};
+use corpuscle_experiments::{Parameter, Simulation, Value};
 use corpuscle_io::number::significant;
 use corpuscle_io::{Registry, Scenario};
 
 use super::Subject;
-use crate::console;
 use crate::table::{Align, table};
 use crate::trouble::Trouble;
+use crate::{console, memory};
+
+/// A trial takes so long, and is given so long until it has made a beginning.
+const TRIAL: Duration = Duration::from_millis(300);
+const PATIENCE: Duration = Duration::from_secs(2);
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -24,23 +31,59 @@ pub(crate) fn check(arguments: &Arguments, registry: Registry) -> Result<ExitCod
     // Setting the system up is what tells whether the values go together: a box too small, spheres that overlap.
     let simulation = scenario.start()?;
     let end = scenario.duration.unwrap_or_else(|| simulation.end());
-    console::print(&explain(&scenario, &simulation.honesty().engine, end))?;
+    let engine = simulation.honesty().engine;
+    let cost = cost(&scenario, time_needed(simulation, end));
+    console::print(&explain(&scenario, &engine, end, &cost))?;
     Ok(ExitCode::SUCCESS)
 }
 
-fn explain(scenario: &Scenario, engine: &str, end: f64) -> String {
+/// What a run would cost.
+fn cost(scenario: &Scenario, time: Option<Duration>) -> String {
+    let memory = memory::bytes(memory::needed(scenario));
+    let of = memory::available().map_or_else(String::new, |bytes| format!(", of {} there are", memory::bytes(bytes)));
+    let time = time.map_or_else(
+        || "more than can be judged in two seconds".into(),
+        |time| format!("about {} s on this machine, by its first steps", significant(time.as_secs_f64(), 2)),
+    );
+    format!("  memory      about {memory}{of}\n  time        {time}\n")
+}
+
+/// How long the whole would take on the clock, judged by a trial of a moment, of which nothing is kept. None when it is over in
+/// no time, or not begun in two seconds.
+fn time_needed(mut simulation: Box<dyn Simulation>, end: f64) -> Option<Duration> {
+    let (sender, receiver) = mpsc::channel();
+    thread::spawn(move || {
+        let (start, clock) = (simulation.time(), Instant::now());
+        let mut step = 1e-4 * (end - start);
+        while clock.elapsed() < TRIAL && simulation.time() < end {
+            if simulation.advance((simulation.time() + step).min(end)).is_err() {
+                break;
+            }
+            step *= 1.5;
+        }
+        let share = (simulation.time() - start) / (end - start);
+        // Nobody may be waiting any more.
+        let _ = sender.send(clock.elapsed().as_secs_f64() / share);
+    });
+    let seconds = receiver.recv_timeout(PATIENCE).ok()?;
+    Duration::try_from_secs_f64(seconds).ok()
+}
+
+fn explain(scenario: &Scenario, engine: &str, end: f64, cost: &str) -> String {
     let mut out = format!("{}\n{}\n\n", scenario.title(), scenario.summary());
     // Writing into a string cannot fail.
     let _ = writeln!(out, "  experiment  {}\n  engine      {engine}", scenario.name());
-    let _ = writeln!(out, "  seed        {}\n  duration    {}\n", scenario.settings.seed, significant(end, 6));
+    let _ = writeln!(out, "  seed        {}\n  duration    {}", scenario.settings.seed, significant(end, 6));
+    out += cost;
+    out.push('\n');
     if scenario.parameters().next().is_none() {
-        return out + "Valid. Nothing was run.\n";
+        return out + "Valid. Nothing was written.\n";
     }
     let head = ["parameter", "value", "", "accepts", "meaning"].map(String::from).to_vec();
     let rows = scenario.parameters().map(|(parameter, value, given)| row(parameter, value, given));
     let rows: Vec<Vec<String>> = std::iter::once(head).chain(rows).collect();
     out += &table(&[Align::Left, Align::Right, Align::Left, Align::Left, Align::Left], &rows);
-    out + "\nValid. Nothing was run.\n"
+    out + "\nValid. Nothing was written.\n"
 }
 
 fn row(parameter: &Parameter, value: &Value, given: bool) -> Vec<String> {

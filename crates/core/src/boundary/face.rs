@@ -4,7 +4,7 @@ use crate::{Invalid, Motion};
 
 /// One face of the box across an axis with [walls](crate::Axis::Walls): hard, smooth, still, closed and without a
 /// temperature unless told otherwise.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Face {
     /// Temperature `kT`: a particle leaves this face as if it came from a gas in equilibrium behind it.
     pub temperature: Option<f64>,

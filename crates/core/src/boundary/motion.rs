@@ -3,7 +3,7 @@
 use crate::Invalid;
 
 /// A prescribed motion along one axis: the coordinate as a function of physical time.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Motion {
     /// Along straight lines from point to point `(time, coordinate)`, times ascending; at rest before the first and after
     /// the last. Two points are a motion at constant velocity that stops.

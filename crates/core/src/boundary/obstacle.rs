@@ -4,7 +4,7 @@ use crate::{Boundary, Invalid, Vector};
 
 /// A fixed hard sphere (disc in 2-D): a peg of a Galton board, a scatterer of a Lorentz gas. Obstacles may overlap one
 /// another and stick out of walls.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Obstacle<const D: usize> {
     /// Where its centre is, in the box.
     pub centre: Vector<D>,

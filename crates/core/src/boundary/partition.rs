@@ -3,7 +3,7 @@
 use crate::{Boundary, Invalid, Vector};
 
 /// An opening in a partition: the strip `from..to` along one axis, over the whole box along the others.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Hole {
     /// Axis along which the strip is measured; not the partition's own axis.
     pub along: usize,
@@ -17,7 +17,7 @@ pub struct Hole {
 ///
 /// It has no thickness: a particle touches its flat side when the centre is a radius away, and the rim of its hole
 /// when the rim is a radius away from the centre.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Partition {
     /// Axis the plate is perpendicular to.
     pub axis: usize,

@@ -6,7 +6,7 @@ use crate::{Axis, Boundary, Invalid};
 /// of two-body contacts, a constant force accelerates it by `force / mass`, and at its stops it bounces elastically.
 ///
 /// A uniform field acts on particles only: the weight of a piston is part of its `force`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Piston {
     /// Axis it moves along, one with walls.
     pub axis: usize,

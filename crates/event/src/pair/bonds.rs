@@ -34,6 +34,12 @@ impl Bonds {
         self.0.iter_mut().for_each(Vec::clear);
     }
 
+    /// All pairs, each once.
+    pub(crate) fn pairs(&self) -> impl Iterator<Item = (u32, u32)> {
+        let of = |(i, partners): (usize, &Vec<u32>)| partners.iter().map(move |&j| (i as u32, j)).collect::<Vec<_>>();
+        self.0.iter().enumerate().flat_map(of).filter(|(i, j)| i < j)
+    }
+
     /// Number of pairs.
     pub(crate) fn count(&self) -> usize {
         self.0.iter().map(Vec::len).sum::<usize>() / 2

@@ -13,10 +13,12 @@
 mod bath;
 mod charts;
 
+use corpuscle_checkpoint::{Resume, resume};
 use corpuscle_core::{Axis as Faces, Engine, Failure, Invalid, particles::ball_volume};
 use corpuscle_observe::{Chart, Check, Curves, Estimate, Schedule, msd, theory, vacf};
 use corpuscle_scene::{Colour, Colouring, Scene, TrailPoint};
 
+use crate::horizon::precision_horizon;
 use crate::{Action, Experiment, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, gas};
 use bath::{Bath, TRACER};
 
@@ -285,7 +287,17 @@ impl<const D: usize> Brownian<D> {
     }
 }
 
+resume!(Brownian<const D> { values: [schedule, times], parts: [baths], set_up: [set, duration] });
+
 impl<const D: usize> Simulation for Brownian<D> {
+    fn state(&self) -> Option<&dyn Resume> {
+        Some(self)
+    }
+
+    fn state_mut(&mut self) -> Option<&mut dyn Resume> {
+        Some(self)
+    }
+
     fn time(&self) -> f64 {
         self.baths[0].time()
     }
@@ -392,6 +404,8 @@ impl<const D: usize> Simulation for Brownian<D> {
             energy_drift: Some(largest(|bath| bath.energy.largest())),
             momentum_drift: (self.set.faces == Faces::Periodic).then(|| largest(|bath| bath.momentum.largest())),
             largest_overlap: Some(self.baths.iter().map(overlap).fold(0.0, f64::max)),
+            rejected_events: Some(self.baths.iter().map(|bath| bath.engine.counts().stale).sum()),
+            precision_horizon: precision_horizon(&self.baths[0].engine),
             ..Honesty::default()
         }
     }

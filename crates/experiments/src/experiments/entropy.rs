@@ -10,6 +10,7 @@
 mod charts;
 mod room;
 
+use corpuscle_checkpoint::{Resume, resume};
 use std::f64::consts::LN_2;
 
 use corpuscle_core::{Boundary, Engine, Failure, Invalid, Vector};
@@ -18,6 +19,7 @@ use corpuscle_observe::entropy::{Cells, equilibrium_entropy};
 use corpuscle_observe::{Chart, Check, Estimate, Schedule, theory};
 use corpuscle_scene::{Colour, Colouring, Label, Region, Scene};
 
+use crate::horizon::precision_horizon;
 use crate::{Action, Experiment, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, gas};
 use room::{Process, Room, Sample};
 
@@ -219,6 +221,7 @@ struct Entropy<const D: usize> {
 }
 
 /// The way out of the room on show, remembered, and how far the way back strays from it.
+#[derive(serde::Serialize, serde::Deserialize)]
 struct Echo<const D: usize> {
     /// Sample at which the velocities are reversed.
     turn: usize,
@@ -326,7 +329,21 @@ impl<const D: usize> Entropy<D> {
     }
 }
 
+resume!(Entropy<const D> {
+    values: [schedule, time, times, echo],
+    parts: [replicas, shown],
+    set_up: [set, duration],
+});
+
 impl<const D: usize> Simulation for Entropy<D> {
+    fn state(&self) -> Option<&dyn Resume> {
+        Some(self)
+    }
+
+    fn state_mut(&mut self) -> Option<&mut dyn Resume> {
+        Some(self)
+    }
+
     fn time(&self) -> f64 {
         self.time
     }
@@ -433,6 +450,8 @@ impl<const D: usize> Simulation for Entropy<D> {
             work_unit: "collisions",
             energy_drift: Some(rooms().map(drift).fold(0.0, f64::max)),
             largest_overlap: Some(rooms().map(|room| overlap(&room.engine)).fold(0.0, f64::max)),
+            rejected_events: Some(rooms().map(|room| room.engine.counts().stale).sum()),
+            precision_horizon: precision_horizon(&self.shown.engine),
             ..Honesty::default()
         }
     }

@@ -9,11 +9,13 @@ mod checks;
 mod system;
 mod theory;
 
+use corpuscle_checkpoint::{Resume, resume};
 use corpuscle_core::{Axis, Engine, Failure, Invalid, Random};
 use corpuscle_observe::{Chart, Check, Estimate};
 use corpuscle_scene::{Colouring, Scene};
 
 use crate::drawing::add_event_driven;
+use crate::horizon::precision_horizon;
 use crate::simulation::{Honesty, Simulation, Table};
 use crate::{Experiment, Kind, Parameter, Settings, ensemble, gas};
 use system::{Pace, State, System};
@@ -260,7 +262,18 @@ impl<const D: usize> Laboratory<D> {
     }
 }
 
+resume!(Point<const D> { values: [], parts: [replicas], set_up: [state, expected] });
+resume!(Laboratory<const D> { values: [time], parts: [base, sweeps, dense], set_up: [pace, samples] });
+
 impl<const D: usize> Simulation for Laboratory<D> {
+    fn state(&self) -> Option<&dyn Resume> {
+        Some(self)
+    }
+
+    fn state_mut(&mut self) -> Option<&mut dyn Resume> {
+        Some(self)
+    }
+
     fn time(&self) -> f64 {
         self.time
     }
@@ -319,6 +332,8 @@ impl<const D: usize> Simulation for Laboratory<D> {
             work_unit: "collisions",
             energy_drift: systems().filter_map(|system| system.energy.largest()).reduce(f64::max),
             largest_overlap: self.base.replicas.iter().map(overlap).reduce(f64::max),
+            rejected_events: Some(systems().map(|system| system.engine.counts().stale).sum()),
+            precision_horizon: precision_horizon(&self.base.replicas[0].engine),
             ..Honesty::default()
         }
     }

@@ -9,6 +9,7 @@ mod report;
 mod start;
 mod triangle;
 
+use corpuscle_checkpoint::{Fault, Resume, resume};
 use std::collections::VecDeque;
 
 use corpuscle_core::{Engine, Failure, Invalid};
@@ -178,6 +179,12 @@ impl ThreeBody {
         self.start.preset == "pythagorean" && self.start.masses() == [3.0, 4.0, 5.0] && self.start.softening == 0.0
     }
 
+    /// What is measured once, beside the system on show, is the same whenever it is measured.
+    fn measure_again(&mut self) -> Result<(), Fault> {
+        self.aside = if self.time > 0.0 { Some(self.measure_aside().map_err(Fault::new)?) } else { None };
+        Ok(())
+    }
+
     fn measure_aside(&self) -> Result<Aside, Failure> {
         let preset = self.start.preset.as_str();
         let (all, eight) = (preset == "paper", preset == "figure-eight");
@@ -230,7 +237,22 @@ impl ThreeBody {
     }
 }
 
+resume!(ThreeBody {
+    values: [path, energy_error, other_energy_error, closure, coarse_closure, reach, samples, time],
+    parts: [runs, parting],
+    set_up: [start, seed, aside],
+    then: measure_again,
+});
+
 impl Simulation for ThreeBody {
+    fn state(&self) -> Option<&dyn Resume> {
+        Some(self)
+    }
+
+    fn state_mut(&mut self) -> Option<&mut dyn Resume> {
+        Some(self)
+    }
+
     fn time(&self) -> f64 {
         self.time
     }
@@ -299,8 +321,10 @@ impl Simulation for ThreeBody {
             energy_drift: Some(run.relative_energy_error()),
             momentum_drift: Some(run.relative_momentum_error()),
             angular_momentum_drift: Some(run.relative_angular_momentum_error()),
-            largest_overlap: None,
             stability_number: run.engine.integrator().dt().map(|dt| dt * run.fastest),
+            // Until neighbouring paths, which part as measured, have gone from rounding to the size of the orbits.
+            precision_horizon: self.parting.growth().map(|growth| -libm::log(f64::EPSILON) / growth.rate.mean),
+            ..Honesty::default()
         }
     }
 

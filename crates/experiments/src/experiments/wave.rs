@@ -13,6 +13,7 @@ mod theory;
 mod trials;
 mod verdicts;
 
+use corpuscle_checkpoint::{Fault, Resume, resume};
 use std::f64::consts::TAU;
 
 use corpuscle_core::{Failure, Invalid};
@@ -174,7 +175,7 @@ enum Start {
 }
 
 /// Energies at one time.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 struct Sample {
     time: f64,
     kinetic: f64,
@@ -375,6 +376,14 @@ impl Wave {
         self.trials.iter().filter_map(Trial::finding)
     }
 
+    /// d'Alembert's solution does not know that somebody turned the wave round.
+    fn forget_when_reversed(&mut self) -> Result<(), Fault> {
+        if self.reversed {
+            self.dalembert = None;
+        }
+        Ok(())
+    }
+
     /// Records energies and pictures at the experiment's own times.
     fn sample_until(&mut self, to: f64) -> Result<(), Invalid> {
         self.record_until(to).map_err(|failure| Invalid::new("start", failure, "a chain that can start"))
@@ -427,7 +436,22 @@ impl Wave {
     }
 }
 
+resume!(Wave {
+    values: [schedule, time, samples, kept, largest, deviation, reversed],
+    parts: [chain, trials],
+    set_up: [material, ratio, start, amplitude, step, dalembert, initial, end],
+    then: forget_when_reversed,
+});
+
 impl Simulation for Wave {
+    fn state(&self) -> Option<&dyn Resume> {
+        Some(self)
+    }
+
+    fn state_mut(&mut self) -> Option<&mut dyn Resume> {
+        Some(self)
+    }
+
     fn time(&self) -> f64 {
         self.time
     }

@@ -4,6 +4,7 @@ mod boundary;
 mod placement;
 mod rules;
 
+use corpuscle_checkpoint::{Fault, Reader, Resume, Writer};
 use corpuscle_core::{Boundary, Engine, Failure, Invalid, Observer, Particles, Piston, Vector};
 use corpuscle_event::EventDriven;
 use corpuscle_time::{
@@ -75,6 +76,25 @@ impl<const D: usize> AnyEngine<D> {
             }
             Self::Time(engine) => (engine.kinetic_energy(), engine.potential_energy()),
         }
+    }
+}
+
+impl<const D: usize> Resume for AnyEngine<D> {
+    fn save(&self, out: &mut Writer) -> Result<(), Fault> {
+        out.fields(1)?;
+        match self {
+            Self::Event(engine) => out.value("event", engine),
+            Self::Time(engine) => out.part("time", engine),
+        }
+    }
+
+    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), Fault> {
+        from.fields(1)?;
+        match self {
+            Self::Event(engine) => **engine = from.value("event")?,
+            Self::Time(engine) => from.part("time", engine)?,
+        }
+        Ok(())
     }
 }
 

@@ -2,7 +2,8 @@
 
 use std::collections::VecDeque;
 
-use corpuscle_core::{Engine, Failure, Invalid, Particles, Vector};
+use corpuscle_checkpoint::{Resume, resume};
+use corpuscle_core::{Axis, Engine, Failure, Invalid, Particles, Vector};
 use corpuscle_event::Pair;
 use corpuscle_observe::{Chart, Check, Estimate, Histogram, RadialDistribution, Schedule, VirialPressure, WallPressure};
 use corpuscle_scene::{Colour, Colouring, Line, Scene, TrailPoint};
@@ -10,6 +11,7 @@ use corpuscle_scene::{Colour, Colouring, Line, Scene, TrailPoint};
 use super::build::{AnyEngine, Built, build};
 use super::spec::{Observable, System};
 use super::verdict::Conserved;
+use crate::horizon::precision_horizon;
 use crate::{Action, Honesty, Simulation, Table, drawing};
 
 /// Samples taken when the file does not say how often.
@@ -24,7 +26,7 @@ const TRAIL: usize = 2000;
 const SETTLED: f64 = 0.2;
 
 /// What is noted at each sampling time.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Sample {
     pub(super) time: f64,
     pub(super) kinetic: f64,
@@ -37,6 +39,7 @@ pub(super) struct Sample {
 }
 
 /// A step of a path that is drawn.
+#[derive(serde::Serialize, serde::Deserialize)]
 struct Step<const D: usize> {
     point: TrailPoint,
     unwrapped: Vector<D>,
@@ -61,6 +64,8 @@ pub(super) struct Free<const D: usize> {
     /// Index of the first sample in equilibrium, once there is one.
     pub(super) settled_from: Option<usize>,
     pub(super) momentum: Conserved<3>,
+    /// Angular momentum about the origin.
+    angular_momentum: Conserved<3>,
     /// Energy against the magnitude of its terms, which rounding is relative to.
     pub(super) energy: Conserved<1>,
     /// Energy against what moves: the largest kinetic energy.
@@ -133,6 +138,7 @@ impl<const D: usize> Free<D> {
             samples: vec![],
             settled_from: None,
             momentum: Conserved::new(),
+            angular_momentum: Conserved::new(),
             energy: Conserved::new(),
             motion: Conserved::new(),
             rise: 0.0,
@@ -167,6 +173,9 @@ impl<const D: usize> Free<D> {
         self.samples.push(Sample { time, kinetic, potential, temperature, pressure, piston });
         let moving = particles.velocity.iter().zip(&particles.mass).map(|(v, m)| m * v.norm()).sum();
         self.momentum.see(particles.momentum().to_three(), moving);
+        let arms =
+            particles.position.iter().zip(&particles.velocity).zip(&particles.mass).map(|((r, v), m)| m * r.norm() * v.norm());
+        self.angular_momentum.see(particles.angular_momentum(), arms.sum());
         let energy = kinetic + potential;
         self.energy.see([energy], kinetic + potential.abs());
         self.motion.see([energy], kinetic);
@@ -251,6 +260,11 @@ impl<const D: usize> Free<D> {
         2.0 * (kinetic - drift).max(0.0) / self.degrees_of_freedom as f64
     }
 
+    /// Whether nothing takes up angular momentum: no faces at all.
+    fn keeps_angular_momentum(&self) -> bool {
+        self.closed && self.conservative && self.engine.boundary().axes.iter().all(|&axis| axis == Axis::Open)
+    }
+
     pub(super) fn largest_radius(&self) -> f64 {
         self.start_particles.radius.iter().copied().fold(0.0, f64::max)
     }
@@ -294,7 +308,27 @@ fn sample_interval<const D: usize>(system: &System, engine: &AnyEngine<D>) -> Re
     Ok(interval)
 }
 
+resume!(Free<const D> {
+    values: [
+        trails, reached, schedule, samples, settled_from, momentum, angular_momentum, energy, motion, rise, lowest, wall_pressure, virial_pressure,
+        speeds, structure, displacement
+    ],
+    parts: [engine],
+    set_up: [
+        title, names, observe, springs, duration, structure_every, start, start_particles, degrees_of_freedom, elastic, isolated,
+        conservative, closed, field
+    ],
+});
+
 impl<const D: usize> Simulation for Free<D> {
+    fn state(&self) -> Option<&dyn Resume> {
+        Some(self)
+    }
+
+    fn state_mut(&mut self) -> Option<&mut dyn Resume> {
+        Some(self)
+    }
+
     fn time(&self) -> f64 {
         self.reached
     }
@@ -384,6 +418,15 @@ impl<const D: usize> Simulation for Free<D> {
                 AnyEngine::Time(_) => self.conservative.then(|| self.motion.relative()),
             },
             momentum_drift: self.closed.then(|| self.momentum.relative()),
+            angular_momentum_drift: self.keeps_angular_momentum().then(|| self.angular_momentum.relative()),
+            rejected_events: match &self.engine {
+                AnyEngine::Event(engine) => Some(engine.counts().stale),
+                AnyEngine::Time(_) => None,
+            },
+            precision_horizon: match &self.engine {
+                AnyEngine::Event(engine) => precision_horizon(engine),
+                AnyEngine::Time(_) => None,
+            },
             ..Honesty::default()
         }
     }
@@ -402,7 +445,7 @@ impl<const D: usize> Simulation for Free<D> {
     fn act(&mut self, action: Action) -> Result<(), Invalid> {
         let Action::Reverse = action;
         // Turning round is an outside change of momentum: what is conserved counts from here.
-        self.momentum = Conserved::new();
+        (self.momentum, self.angular_momentum) = (Conserved::new(), Conserved::new());
         match &mut self.engine {
             AnyEngine::Event(engine) => engine.reverse_velocities(),
             AnyEngine::Time(engine) => engine.edit(|particles| particles.velocity.iter_mut().for_each(|v| *v = -*v))?,

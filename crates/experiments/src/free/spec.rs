@@ -2,12 +2,12 @@
 
 mod walls;
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 pub use walls::{Cylinder, Grown, Peg, Side, Swing, Wall};
 
-use serde::{Deserialize, Serialize};
-
 /// A system of the user's own: box, particles, interactions, engine, and what to observe for how long.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct System {
     /// Title shown on pictures and the report.
@@ -69,7 +69,7 @@ fn default_title() -> String {
 }
 
 /// The two engines.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum EngineKind {
     /// Hard particles, from collision to collision.
@@ -79,7 +79,7 @@ pub enum EngineKind {
 }
 
 /// The box.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Room {
     /// Lower corner.
@@ -91,7 +91,7 @@ pub struct Room {
 }
 
 /// One word for all axes, or one word an axis.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Faces {
     /// The same across every axis.
@@ -101,7 +101,7 @@ pub enum Faces {
 }
 
 /// Kind of the two faces across an axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Face {
     /// Out at one side, in at the other.
@@ -113,7 +113,7 @@ pub enum Face {
 }
 
 /// Name of an axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum AxisName {
     /// The first.
@@ -136,7 +136,7 @@ impl AxisName {
 }
 
 /// A thin hard plate.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Plate {
     /// Axis the plate is perpendicular to.
@@ -152,7 +152,7 @@ pub struct Plate {
 }
 
 /// An opening in a plate.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Opening {
     /// Axis along which it is measured.
@@ -164,7 +164,7 @@ pub struct Opening {
 }
 
 /// Particles generated in number.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Species {
     /// Name shown in the legend.
@@ -197,7 +197,7 @@ fn one() -> f64 {
 }
 
 /// A particle placed by hand.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Single {
     /// Name of its species shown in the legend.
@@ -223,7 +223,7 @@ pub struct Single {
 }
 
 /// A spring between two particles.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Bond {
     /// Index of one end.
@@ -241,7 +241,7 @@ pub struct Bond {
 }
 
 /// Rules of collision.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Collisions {
     /// Coefficient of restitution; 1, elastic, when not given.
@@ -262,7 +262,7 @@ pub struct Collisions {
 }
 
 /// The material of viscoelastic spheres.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Viscoelastic {
     /// `2 Y / (3 (1 - nu^2))` of Young's modulus and Poisson's ratio.
@@ -272,7 +272,7 @@ pub struct Viscoelastic {
 }
 
 /// A square well.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Well {
     /// Where it ends, over the contact distance.
@@ -282,7 +282,7 @@ pub struct Well {
 }
 
 /// A square shoulder.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Shoulder {
     /// Where it ends, over the contact distance.
@@ -292,7 +292,7 @@ pub struct Shoulder {
 }
 
 /// Forces between particles, each of all pairs.
-#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Forces {
     /// Newton's gravity.
@@ -307,7 +307,7 @@ pub struct Forces {
 }
 
 /// Newton's gravity.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Gravitation {
     /// Constant of gravity.
@@ -319,7 +319,7 @@ pub struct Gravitation {
 }
 
 /// A pair potential of energy scale `epsilon` and length scale `sigma`.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Contact {
     /// Depth.
@@ -334,7 +334,7 @@ pub struct Contact {
 }
 
 /// Integrator and its step.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Stepper {
     /// Name: one of `Integrator::NAMES`.
@@ -345,7 +345,7 @@ pub struct Stepper {
 }
 
 /// What can be measured in a free system.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Observable {
     /// Kinetic temperature against time.

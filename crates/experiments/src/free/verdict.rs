@@ -1,7 +1,7 @@
 //! What is checked of a free system: conservation laws, and the equation of state where one is known.
 
-use corpuscle_core::Axis as Faces;
 use corpuscle_core::particles::ball_volume;
+use corpuscle_core::{Axis as Faces, Vector};
 use corpuscle_observe::{Check, Estimate, blocking, theory};
 
 use super::build::AnyEngine;
@@ -17,9 +17,9 @@ const ROUNDING_BOUND: f64 = 1e-10;
 
 /// The largest departure of what should be conserved from its start, over the largest scale seen: a system may start at
 /// rest.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Conserved<const K: usize> {
-    start: Option<[f64; K]>,
+    start: Option<Vector<K>>,
     largest: f64,
     scale: f64,
 }
@@ -30,7 +30,7 @@ impl<const K: usize> Conserved<K> {
     }
 
     pub(super) fn see(&mut self, value: [f64; K], scale: f64) {
-        let start = *self.start.get_or_insert(value);
+        let start = self.start.get_or_insert(Vector(value)).0;
         let departure = value.iter().zip(start).map(|(x, x0)| (x - x0) * (x - x0)).sum::<f64>().sqrt();
         // f64::max would let a value that is not a number pass unseen.
         self.largest = self.largest.max(if departure.is_nan() { f64::INFINITY } else { departure });

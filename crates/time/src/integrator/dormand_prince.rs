@@ -3,6 +3,7 @@
 //! Prince and Dormand 1981 (doi:10.1016/0771-050X(81)90010-3); step control and dense output after Hairer, Norsett and Wanner
 //! 1993 (doi:10.1007/978-3-540-78862-1, sections II.5 and II.10).
 
+use corpuscle_checkpoint::resume;
 use corpuscle_core::{Failure, Vector};
 
 use super::dormand_prince_table::{DENSE, DENSE_SLOPES, ERROR_3, ERROR_5, MATRIX, NODES, SLOPES};
@@ -32,6 +33,8 @@ pub(crate) struct DormandPrince<const D: usize> {
     /// Terms of the dense output of the last step, empty until somebody asks.
     dense: Vec<[(Vector<D>, Vector<D>); TERMS]>,
 }
+
+resume!(DormandPrince<const D> { values: [start, taken, reached, next, before, after, slopes, dense], set_up: [tolerance] });
 
 impl<const D: usize> DormandPrince<D> {
     pub(crate) fn new(tolerance: f64, first_step: Option<f64>) -> Self {
@@ -126,6 +129,10 @@ impl<const D: usize> DormandPrince<D> {
 }
 
 impl<const D: usize> Adaptive<D> for DormandPrince<D> {
+    fn particle_count(&self) -> usize {
+        self.after.len()
+    }
+
     fn reached(&self) -> f64 {
         self.reached
     }

@@ -6,6 +6,7 @@
 //! Everhart 1985 (doi:10.1007/978-94-009-5400-7_17); Rein and Spiegel 2015 (doi:10.1093/mnras/stu2164), whose step control
 //! and compensated summation are followed here.
 
+use corpuscle_checkpoint::resume;
 use corpuscle_core::{Failure, Vector};
 
 use super::gauss_radau_table::{BINOMIAL, END_WEIGHTS, NODES, ORDER, Table};
@@ -20,7 +21,7 @@ const ROUNDS: u32 = 12;
 type Coefficients<const D: usize> = [Vector<D>; ORDER];
 
 /// What is kept of one particle.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 struct Body<const D: usize> {
     /// State at the start of the step, not wrapped into the box, with what rounding took from it.
     position: Sum<D>,
@@ -41,7 +42,7 @@ struct Body<const D: usize> {
 ///
 /// Kahan's summation first adds what was lost to the next increment. That rounds it to the increment's digits, among which ties
 /// are frequent: something far too small to count then decides all ties one way, and ten times its own size is added.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 struct Sum<const D: usize> {
     value: Vector<D>,
     lost: Vector<D>,
@@ -74,6 +75,8 @@ pub(crate) struct GaussRadau<const D: usize> {
     /// Accelerations at the end of the last step.
     after: Vec<Vector<D>>,
 }
+
+resume!(GaussRadau<const D> { values: [bodies, start, taken, end, next, stepped, after], set_up: [tolerance, table] });
 
 impl<const D: usize> GaussRadau<D> {
     pub(crate) fn new(tolerance: f64, first_step: Option<f64>) -> Self {
@@ -222,6 +225,10 @@ impl<const D: usize> GaussRadau<D> {
 }
 
 impl<const D: usize> Adaptive<D> for GaussRadau<D> {
+    fn particle_count(&self) -> usize {
+        self.bodies.len()
+    }
+
     fn reached(&self) -> f64 {
         self.end.value[0]
     }

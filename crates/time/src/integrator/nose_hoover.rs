@@ -16,13 +16,14 @@
 //! A step is symmetric: half a step of the chain, velocity Verlet, half a step of the chain (Martyna, Tuckerman, Tobias and Klein
 //! 1996, doi:10.1080/00268979600100761), the chain's own step being of order 4.
 
+use corpuscle_checkpoint::resume;
 use corpuscle_core::{Failure, Invalid};
 
 use super::composition::LENGTHS_4;
 use crate::system::System;
 
 /// One link of the chain.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Link {
     place: f64,
     velocity: f64,
@@ -36,6 +37,8 @@ pub(crate) struct Chain {
     degrees_of_freedom: f64,
     pub(crate) links: Vec<Link>,
 }
+
+resume!(Chain { values: [links], set_up: [temperature, degrees_of_freedom] });
 
 impl Chain {
     /// A chain at rest.

@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 
+use corpuscle_checkpoint::resume;
 use corpuscle_core::placement::maxwell;
 use corpuscle_core::{Axis, Boundary, Contact, Engine, Failure, Invalid, Meeting, Observer, Particles, Random, Vector};
 use corpuscle_event::{EventDriven, Rules};
@@ -16,7 +17,7 @@ pub(super) const TRACER: usize = 0;
 const COLLISIONS_BEFORE: f64 = 10.0;
 
 /// The kicks the tracer gets: `sum |dV|^2` over its collisions.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Kicks {
     /// `sum |dV|^2`.
     pub(super) squares: f64,
@@ -54,6 +55,12 @@ pub(super) struct Bath<const D: usize> {
     /// Physical time of the engine at which the measurement started.
     started: f64,
 }
+
+resume!(Bath<const D> {
+    values: [engine, kicks, path, speed_squares, energy, momentum],
+    parts: [displacement, velocity],
+    set_up: [started],
+});
 
 impl<const D: usize> Bath<D> {
     /// Fills the box, puts the tracer in its middle, and lets the bath come to equilibrium.

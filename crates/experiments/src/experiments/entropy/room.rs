@@ -1,5 +1,6 @@
 //! One room of the experiment: a gas that starts left of a partition, or two gases either side of it.
 
+use corpuscle_checkpoint::resume;
 use corpuscle_core::{Axis, Boundary, Engine, Failure, Hole, Invalid, Particles, Partition, Random, Vector};
 use corpuscle_event::{EventDriven, Rules};
 use corpuscle_observe::entropy::{Cells, configurational_entropy};
@@ -17,7 +18,7 @@ pub(super) enum Process {
 }
 
 /// What one room looked like at one sampling time.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Sample {
     /// Coarse-grained entropy `sum over species of ln(N_s! / prod n_i!)`, in units of `k_B`.
     pub(super) entropy: f64,
@@ -40,6 +41,8 @@ pub(super) struct Room<const D: usize> {
     /// Physical time of the engine at which the partition opened.
     opened: f64,
 }
+
+resume!(Room<const D> { values: [engine, samples], set_up: [process, species, initial_energy, cells, opened] });
 
 impl<const D: usize> Room<D> {
     /// Fills the room, lets it come to equilibrium behind the closed partition, and opens that.

@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 
+use corpuscle_checkpoint::resume;
 use corpuscle_core::placement::maxwell;
 use corpuscle_core::{Axis, Boundary, Contact, Engine, Failure, Invalid, Meeting, Observer, Particles, Random, Vector};
 use corpuscle_event::{EventDriven, Rules};
@@ -65,9 +66,10 @@ impl State {
 }
 
 /// What the manometers have counted since the start of the measurement.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(super) struct Totals<const D: usize> {
     /// Sum of the impulses on both faces across each axis.
+    #[serde(with = "corpuscle_core::array")]
     pub(super) walls: [f64; D],
     /// Hits on walls, and the sum of the squares of their impulses.
     pub(super) hits: u64,
@@ -117,11 +119,13 @@ impl<const D: usize> Observer<D> for Totals<D> {
 }
 
 /// Speeds and kinetic energies per axis, from snapshots that have forgotten each other.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(super) struct Speeds {
     /// Counts in [`Speeds::CLASSES`] classes that are equally probable at constant energy.
+    #[serde(with = "corpuscle_core::array")]
     pub(super) classes: [u64; Self::CLASSES],
     /// Counts in bins of [`Speeds::WIDTH`] thermal speeds.
+    #[serde(with = "corpuscle_core::array")]
     pub(super) bins: [u64; Self::BINS],
     /// Sum over snapshots of `sum m v_k^2 / (N kT)`.
     pub(super) shares: [f64; 3],
@@ -186,6 +190,11 @@ pub(super) struct System<const D: usize> {
     keep: bool,
     snapshot: Particles<D>,
 }
+
+resume!(System<const D> {
+    values: [engine, speeds, energy, readings, action, samples, schedule, meter],
+    set_up: [state, pace, keep, snapshot],
+});
 
 impl<const D: usize> System<D> {
     /// A gas in this state. With `keep`, all readings are kept.

@@ -11,6 +11,7 @@
 //! of use, say `|B| dt <= 1/3`, an error at `dt` is at most `2^(1 - p)` times the error of the same run at `2 dt`, which
 //! is measured beside.
 
+use corpuscle_checkpoint::resume;
 use corpuscle_core::{Engine, Failure, Vector};
 use corpuscle_time::{Integrator, TimeDriven};
 
@@ -22,7 +23,7 @@ const UNIT: f64 = 0.5 * f64::EPSILON;
 const LOOKS: f64 = 8.0;
 
 /// Something conserved: its value at the start, its largest error, and the largest scale seen of its rounding.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Watched<const D: usize> {
     start: Option<Vector<D>>,
     /// Largest `|x - x_0|` seen.
@@ -60,7 +61,7 @@ pub(crate) struct Run {
 }
 
 /// Everything at one sampling time.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Frame {
     pub(crate) time: f64,
     pub(crate) position: Vec<Vector<2>>,
@@ -68,6 +69,12 @@ pub(crate) struct Frame {
     /// Largest relative energy error so far.
     pub(crate) energy_error: f64,
 }
+
+resume!(Run {
+    values: [energy, momentum, angular_momentum, fastest, energy_at_start, frames],
+    parts: [engine],
+    set_up: [constant, softening],
+});
 
 impl Run {
     pub(crate) fn new(start: &Start, integrator: Integrator) -> Result<Self, corpuscle_core::Invalid> {

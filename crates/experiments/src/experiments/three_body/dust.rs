@@ -1,5 +1,6 @@
 //! How the paths of neighbouring grains part.
 
+use corpuscle_checkpoint::resume;
 use corpuscle_core::Vector;
 use corpuscle_observe::{Estimate, fit};
 
@@ -37,6 +38,8 @@ pub(crate) struct Growth {
     /// Time until which separations were fitted.
     pub(crate) until: f64,
 }
+
+resume!(Parting { values: [time, neighbours, twins, unrelated, integrators, closest, proportion], set_up: [grains, spacing] });
 
 impl Parting {
     pub(crate) fn new(start: &Start) -> Self {

@@ -4,6 +4,7 @@
 //! transverse masses slide on rods across the string, joined by springs of rest length zero under the tension
 //! `T = kappa a`; longitudinal ones have springs of rest length `a`, which are linear as long as the masses keep their order.
 
+use corpuscle_checkpoint::resume;
 use corpuscle_core::{Axis, Boundary, Engine, Failure, Invalid, Particles, Vector};
 use corpuscle_time::{Drive, Integrator, Pin, Signal, Spring, Springs, TimeDriven};
 
@@ -129,6 +130,8 @@ pub(super) struct Chain {
     rest: Vec<Vector<2>>,
     bonds: Vec<(usize, usize)>,
 }
+
+resume!(Chain { values: [], parts: [engine], set_up: [design, rest, bonds] });
 
 impl Chain {
     /// A chain that starts with these displacements and velocities of its masses.

@@ -3,6 +3,7 @@
 
 use std::f64::consts::TAU;
 
+use corpuscle_checkpoint::resume;
 use corpuscle_core::{Failure, Invalid, Random};
 use corpuscle_time::{Integrator, Signal};
 
@@ -63,7 +64,7 @@ impl Material {
 }
 
 /// One mode's frequency.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Tone {
     pub(super) number: usize,
     /// `k a`.
@@ -77,7 +78,7 @@ pub(super) struct Tone {
 }
 
 /// What a trial found.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) enum Finding {
     /// Frequencies of all modes, and the bound of their relative error.
     Modes { tones: Vec<Tone>, bound: f64 },
@@ -132,6 +133,8 @@ const CLEAR: f64 = 9.0;
 const BEHIND: f64 = 2.0;
 /// The running wave: masses and waves around the ring.
 const RING: (usize, usize) = (80, 2);
+
+resume!(Trial { values: [series, finding], parts: [chain], set_up: [purpose, material, dt, steps, probes, sigma] });
 
 impl Trial {
     /// All modes of a uniform chain at once, at equal amplitudes and random phases.

@@ -1,11 +1,12 @@
 //! What stands or moves in the box besides particles, as a scenario file spells it.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::AxisName;
 
 /// One wall of the box that is more than hard and still.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Wall {
     /// Axis it is perpendicular to.
@@ -27,7 +28,7 @@ pub struct Wall {
 }
 
 /// Which of the two walls across an axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Side {
     /// The one with the smaller coordinate.
@@ -47,7 +48,7 @@ impl Side {
 }
 
 /// A coordinate that swings: `centre + amplitude sin(angular_frequency t + phase)`.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Swing {
     /// Coordinate in the middle.
@@ -62,7 +63,7 @@ pub struct Swing {
 }
 
 /// A fixed hard sphere (disc).
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Peg {
     /// Its centre.
@@ -72,7 +73,7 @@ pub struct Peg {
 }
 
 /// A movable plane of finite mass across the box.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Cylinder {
     /// Axis it moves along.
@@ -93,7 +94,7 @@ pub struct Cylinder {
 }
 
 /// Places without order: particles grow from points while they fly.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Grown {
     /// Part of its radius by which a particle grows while it flies a mean diameter.
