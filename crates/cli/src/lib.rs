@@ -19,7 +19,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use corpuscle_io::Registry;
 
-use command::{bench, check, list, record, run, view};
+use command::{bench, check, lab, list, record, run, view};
 use trouble::Trouble;
 
 /// A physics laboratory: exact hard-particle dynamics, soft particles, gravity and waves, measured beside theory.
@@ -36,7 +36,9 @@ enum Task {
     List(list::Arguments),
     /// Run an experiment or a scenario file, print its checks, and write its report.
     Run(run::Arguments),
-    /// Watch an experiment or a scenario file in a window, or save what the window would show.
+    /// Open the laboratory: a window with charts, parameters and a notebook. The same as `corpuscle` alone.
+    Lab(lab::Arguments),
+    /// Watch an experiment or a scenario file in the laboratory's window, or save what the window would show.
     View(view::Arguments),
     /// Record a clip: .mp4, .gif, or a folder of pictures. Needs no display.
     Record(record::Arguments),
@@ -75,10 +77,8 @@ pub fn main(registry: Registry<'_>) -> ExitCode {
 impl Command {
     fn obey(&self, registry: Registry) -> Result<ExitCode, Trouble> {
         match &self.task {
-            None => {
-                console::print(&usage::welcome(registry))?;
-                Ok(ExitCode::SUCCESS)
-            }
+            None => lab::welcome(registry),
+            Some(Task::Lab(arguments)) => lab::lab(arguments, registry),
             Some(Task::List(arguments)) => list::list(arguments, registry),
             Some(Task::Run(arguments)) => run::run(arguments, registry),
             Some(Task::View(arguments)) => view::view(arguments, registry),

@@ -9,6 +9,7 @@ mod experiments;
 pub mod free;
 mod gas;
 pub mod parameter;
+mod peek;
 pub mod simulation;
 
 pub use parameter::{Kind, Parameter, Settings, Value};

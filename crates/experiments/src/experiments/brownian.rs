@@ -17,7 +17,7 @@ use corpuscle_core::{Axis as Faces, Engine, Failure, Invalid, particles::ball_vo
 use corpuscle_observe::{Chart, Check, Curves, Estimate, Schedule, msd, theory, vacf};
 use corpuscle_scene::{Colour, Colouring, Scene, TrailPoint};
 
-use crate::{Action, Experiment, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, gas};
+use crate::{Action, Experiment, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, gas, peek};
 use bath::{Bath, TRACER};
 
 /// The registry's entry.
@@ -398,6 +398,11 @@ impl<const D: usize> Simulation for Brownian<D> {
 
     fn moments(&self) -> Vec<f64> {
         vec![0.0, 2.0 * self.set.relaxation(), 10.0 * self.set.relaxation()]
+    }
+
+    fn next_event(&self) -> Option<f64> {
+        let bath = &self.baths[0];
+        peek::next_contact(&bath.engine, 1.5 * self.duration).map(|time| time - bath.started())
     }
 
     fn act(&mut self, action: Action) -> Result<(), Invalid> {

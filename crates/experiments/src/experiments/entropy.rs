@@ -18,7 +18,7 @@ use corpuscle_observe::entropy::{Cells, equilibrium_entropy};
 use corpuscle_observe::{Chart, Check, Estimate, Schedule, theory};
 use corpuscle_scene::{Colour, Colouring, Label, Region, Scene};
 
-use crate::{Action, Experiment, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, gas};
+use crate::{Action, Experiment, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, gas, peek};
 use room::{Process, Room, Sample};
 
 /// The registry's entry.
@@ -435,6 +435,10 @@ impl<const D: usize> Simulation for Entropy<D> {
             largest_overlap: Some(rooms().map(|room| overlap(&room.engine)).fold(0.0, f64::max)),
             ..Honesty::default()
         }
+    }
+
+    fn next_event(&self) -> Option<f64> {
+        peek::next_contact(&self.shown.engine, 1.5 * self.duration).map(|time| time - self.shown.opened())
     }
 
     fn moments(&self) -> Vec<f64> {

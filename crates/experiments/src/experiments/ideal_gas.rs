@@ -15,7 +15,7 @@ use corpuscle_scene::{Colouring, Scene};
 
 use crate::drawing::add_event_driven;
 use crate::simulation::{Honesty, Simulation, Table};
-use crate::{Experiment, Kind, Parameter, Settings, ensemble, gas};
+use crate::{Experiment, Kind, Parameter, Settings, ensemble, gas, peek};
 use system::{Pace, State, System};
 
 /// Samples a crossing of the box, `a / sqrt(kT/m)`.
@@ -321,6 +321,10 @@ impl<const D: usize> Simulation for Laboratory<D> {
             largest_overlap: self.base.replicas.iter().map(overlap).reduce(f64::max),
             ..Honesty::default()
         }
+    }
+
+    fn next_event(&self) -> Option<f64> {
+        peek::next_contact(&self.base.replicas[0].engine, 1.5 * self.end())
     }
 
     fn moments(&self) -> Vec<f64> {
