@@ -149,9 +149,16 @@ impl Command {
 
 /// Takes the commands whose keys were pressed since the last frame.
 ///
-/// Keys held with other modifiers are not meant; Shift only makes other letters of some keys.
+/// Keys held with other modifiers are not meant; Shift only makes other letters of some keys. While something is typed, only
+/// `Esc` is meant; while a button or a slider has the keyboard, space and arrows belong to it.
 pub fn pressed(context: &egui::Context) -> Vec<Command> {
-    context.input_mut(|input| {
+    let typing = context.text_edit_focused();
+    let focused = context.egui_wants_keyboard_input();
+    let meant = |binding: &Binding, key: Key| {
+        let to_widget = matches!(key, Key::Space | Key::ArrowLeft | Key::ArrowRight);
+        !(typing && binding.command != Command::Close) && !(focused && to_widget)
+    };
+    context.input(|input| {
         let mut found = vec![];
         for event in &input.events {
             let egui::Event::Key { key, pressed: true, modifiers, repeat, .. } = event else { continue };
@@ -159,6 +166,7 @@ pub fn pressed(context: &egui::Context) -> Vec<Command> {
                 binding.keys.contains(key) && binding.with_command == modifiers.command && !modifiers.alt && right_slash(*key, *modifiers)
             });
             if let Some(binding) = binding
+                && meant(binding, *key)
                 && (!repeat || binding.command.may_repeat())
             {
                 found.push(binding.command);

@@ -132,6 +132,8 @@ pub struct Model {
 pub struct Typed {
     /// Name of a file to open or to save.
     pub path: String,
+    /// The dialog has just opened: what is typed next is meant for it.
+    pub fresh: bool,
     /// A list of numbers, with the key it is for.
     pub list: Option<(String, String)>,
     /// A parameter's value under a hand that has not let go, with its key.
@@ -271,6 +273,7 @@ impl Model {
 
     fn toggle(&mut self, overlay: Overlay) {
         self.overlay = if self.overlay == overlay { Overlay::None } else { overlay };
+        self.typed.fresh = true;
     }
 
     fn show(&mut self, tab: Tab) {

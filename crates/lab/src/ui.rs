@@ -60,11 +60,8 @@ const SHARE: f32 = 0.315;
 
 /// Draws the window, and lets keys and pointer change the model.
 pub fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot, previews: &Previews, easel: &mut dyn Easel) {
-    let typing = ui.ctx().egui_wants_keyboard_input();
     for command in command::pressed(ui.ctx()) {
-        if !typing || command == command::Command::Close {
-            model.obey(command, seen);
-        }
+        model.obey(command, seen);
     }
     let colours = model.preferences.theme.colours();
     let panel = Frame::new().fill(colours.panel);

@@ -14,7 +14,7 @@ use corpuscle_scene::Palette;
 
 use super::{Subject, positive};
 use crate::console;
-use crate::picture::{Artist, Size};
+use crate::picture::{Artist, Draws, Size};
 use crate::progress::Progress;
 use crate::signal::Stop;
 use crate::table::{Align, table};

@@ -81,7 +81,9 @@ impl Arguments {
 /// The stage alone.
 fn screenshot(arguments: &Arguments, simulation: &mut dyn Simulation, path: &Path) -> Result<(), Trouble> {
     let mut artist = Artist::new(arguments.size, arguments.palette().into())?;
-    approach(arguments.at, simulation, |simulation| drop(artist.look(simulation)))?;
+    approach(arguments.at, simulation, |simulation| {
+        artist.look(simulation);
+    })?;
     Ok(write::atomically(path, &artist.picture(simulation)?.png)?)
 }
 
@@ -95,7 +97,9 @@ fn window_screenshot(
 ) -> Result<(), Trouble> {
     let language = arguments.look.language.map_or(Language::English, Into::into);
     let mut studio = studio(registry, scenario, arguments.size, arguments.palette().into(), language)?;
-    approach(arguments.at, simulation, |simulation| drop(studio.look(simulation)))?;
+    approach(arguments.at, simulation, |simulation| {
+        studio.look(simulation);
+    })?;
     Ok(write::atomically(path, &studio.picture(simulation, false)?.to_png()?)?)
 }
 

@@ -101,7 +101,7 @@ fn name(ui: &mut Ui, model: &mut Model, verb: Text) -> bool {
     ui.horizontal(|ui| {
         let field = ui.add(TextEdit::singleline(&mut model.typed.path).desired_width(250.0));
         field.widget_info(|| egui::WidgetInfo::text_edit(true, "", &model.typed.path, model.text(Text::File)));
-        if !field.has_focus() && !field.lost_focus() && model.typed.path.is_empty() {
+        if std::mem::take(&mut model.typed.fresh) {
             field.request_focus();
         }
         let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
