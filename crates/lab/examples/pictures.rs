@@ -67,7 +67,7 @@ fn draw(folder: &std::path::Path, words: &[String]) -> Result<(), Box<dyn std::e
                             for look in 1..=120 {
                                 simulation.advance(end * f64::from(look) / 120.0)?;
                                 studio.look(simulation.as_ref());
-                                if *tab == Tab::Notebook && look % 20 == 0 {
+                                if *tab == Tab::Notebook && look > 60 && look % 12 == 0 {
                                     studio.record_row(simulation.as_ref());
                                 }
                             }

@@ -78,6 +78,15 @@ impl Language {
         }
     }
 
+    /// The name of a choice such as `gauss-radau-15`.
+    pub fn choice(self, word: &str) -> String {
+        if let (Self::Chinese, Some(name)) = (self, phrases::chinese(word)) {
+            return name.to_owned();
+        }
+        let mut letters = word.chars();
+        letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
+    }
+
     /// The name of a key such as `packing_fraction`: its words.
     pub fn key(self, key: &str) -> String {
         if let (Self::Chinese, Some(name)) = (self, phrases::chinese(key)) {

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use corpuscle_scene::{Colour, Palette};
-use egui::{Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Stroke, TextStyle, Visuals, vec2};
+use egui::{Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, Stroke, TextStyle, Visuals, vec2};
 use serde::{Deserialize, Serialize};
 
 use crate::language::Text;
@@ -160,6 +160,7 @@ impl Theme {
             spacing.item_spacing = vec2(8.0, 6.0);
             spacing.button_padding = vec2(9.0, 4.0);
             spacing.interact_size = vec2(28.0, 26.0);
+            spacing.window_margin = Margin::same(14);
             spacing.slider_rail_height = 4.0;
             spacing.scroll = egui::style::ScrollStyle::thin();
             style.interaction.selectable_labels = false;

@@ -69,7 +69,7 @@ pub fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot, previews: &Previews
 
     Panel::top("bar").frame(edge(14, 10, 7, 7)).show(ui, |ui| bar::show(ui, model, seen));
     Panel::bottom("time").frame(edge(14, 14, 8, 8)).show(ui, |ui| time::show(ui, model, seen));
-    if model.panels {
+    if model.panels && model.overlay != Overlay::Gallery {
         let width = (SHARE * ui.ctx().content_rect().width()).clamp(RIGHT.0, RIGHT.1);
         Panel::left("parameters").exact_size(LEFT).resizable(false).frame(edge(14, 8, 10, 8)).show(ui, |ui| {
             parameters::show(ui, model, seen);

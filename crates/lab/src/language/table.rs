@@ -31,6 +31,8 @@ table! {
     Notebook: "Notebook", "记录本";
     Help: "Keys", "按键";
     Timeline: "Timeline", "时间轴";
+    Colours: "Colours", "配色";
+    LanguageOf: "Language", "语言";
     ThemeDark: "Dark", "深色";
     ThemeLight: "Light", "浅色";
     ThemeProjector: "Projector", "投影";

@@ -40,18 +40,20 @@ fn ends(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
         model.obey(Command::Help, seen);
     }
     let theme = model.preferences.theme;
-    ComboBox::from_id_salt("theme").width(92.0).selected_text(model.text(theme.text())).show_ui(ui, |ui| {
+    let colours = ComboBox::from_id_salt("theme").width(92.0).selected_text(model.text(theme.text())).show_ui(ui, |ui| {
         for choice in Theme::ALL {
             let name = model.text(choice.text());
             ui.selectable_value(&mut model.preferences.theme, choice, name);
         }
     });
+    named(&colours.response, model.text(Text::Colours));
     let language = model.language();
-    ComboBox::from_id_salt("language").width(92.0).selected_text(language.name()).show_ui(ui, |ui| {
+    let languages = ComboBox::from_id_salt("language").width(92.0).selected_text(language.name()).show_ui(ui, |ui| {
         for choice in Language::ALL {
             ui.selectable_value(&mut model.preferences.language, choice, choice.name());
         }
     });
+    named(&languages.response, model.text(Text::LanguageOf));
     for (icon, command, text) in
         [(Icon::Record, Command::Record, Text::DoRecord), (Icon::Save, Command::Save, Text::DoSave), (Icon::Open, Command::Open, Text::DoOpen)]
     {
@@ -59,4 +61,8 @@ fn ends(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
             model.obey(command, seen);
         }
     }
+}
+
+fn named(combo: &egui::Response, name: &str) {
+    combo.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, name));
 }

@@ -43,16 +43,17 @@ pub(super) fn show(ui: &mut Ui, chart: &Chart, run: u64, look: &Look) -> egui::R
             .label(egui::RichText::new(name).size(12.0))
             .tick_label_font(font.clone())
             .tick_label_color(colours.quiet)
-            .label_spacing(if look.large { 15.0..=22.0 } else { 11.0..=16.0 })
+            .label_spacing(8.0..=12.0)
             .formatter(move |mark, range| {
                 let largest = range.start().abs().max(range.end().abs());
                 if logarithmic { decade(mark) } else { tick(mark.value, mark.step_size, largest) }
             })
     };
-    let spacing = |axis: &Axis| {
+    // A number on an axis takes so many points: no more of them than there is room for.
+    let spacing = |axis: &Axis, length: f32, each: f32| {
         let logarithmic = axis.scale == Scale::Logarithmic;
-        let count = if look.large { 6.0 } else { 3.0 };
-        move |input: GridInput| if logarithmic { decades(input) } else { round_marks(input, count) }
+        let count = f64::from(length / each).max(2.0);
+        move |input: GridInput| if logarithmic { decades(input, count) } else { round_marks(input, count) }
     };
     let mut plot = Plot::new(("chart", &chart.name, run, look.large))
         .width(look.width)
@@ -61,8 +62,8 @@ pub(super) fn show(ui: &mut Ui, chart: &Chart, run: u64, look: &Look) -> egui::R
         .set_margin_fraction(vec2(0.03, 0.06))
         .custom_x_axes(vec![hints(&chart.x, AxisHints::new_x())])
         .custom_y_axes(vec![hints(&chart.y, AxisHints::new_y().placement(HPlacement::Left).min_thickness(if look.large { 46.0 } else { 38.0 }))])
-        .x_grid_spacer(spacing(&chart.x))
-        .y_grid_spacer(spacing(&chart.y))
+        .x_grid_spacer(spacing(&chart.x, look.width - 50.0, 46.0))
+        .y_grid_spacer(spacing(&chart.y, look.height - 30.0, if look.large { 24.0 } else { 18.0 }))
         .grid_spacing(8.0..=30.0)
         .grid_color(colours.line)
         .label_formatter(hover)
@@ -237,10 +238,11 @@ fn axis_name(axis: &Axis, language: Language) -> String {
     if axis.unit.is_empty() { name.to_owned() } else { format!("{name} / {}", axis.unit) }
 }
 
-/// Marks at round values: about `count` of them with a number.
+/// Marks at round values, at most about `count` of them.
 fn round_marks(input: GridInput, count: f64) -> Vec<GridMark> {
     let (least, most) = input.bounds;
-    let step = crate::number::one_two_five_below(((most - least) / count).max(f64::MIN_POSITIVE));
+    // The largest of 1, 2 and 5 times a power of ten that is not above 2.5 times the ideal step is never below it.
+    let step = crate::number::one_two_five_below((2.5 * (most - least) / count).max(f64::MIN_POSITIVE));
     if !step.is_finite() || step <= 0.0 {
         return vec![];
     }
@@ -250,14 +252,14 @@ fn round_marks(input: GridInput, count: f64) -> Vec<GridMark> {
 }
 
 /// Marks at powers of ten, every second or third of them where there are many; at 2 and 5 as well where there are few.
-fn decades(input: GridInput) -> Vec<GridMark> {
+fn decades(input: GridInput, count: f64) -> Vec<GridMark> {
     let (least, most) = input.bounds;
     let span = most - least;
     if !span.is_finite() || span > 400.0 {
         return vec![];
     }
-    let every = (span / 6.0).ceil().max(1.0);
-    let within: &[f64] = if span < 1.6 { &[1.0, 2.0, 5.0] } else { &[1.0] };
+    let every = (span / count).ceil().max(1.0);
+    let within: &[f64] = if 3.0 * span < count && span < 1.6 { &[1.0, 2.0, 5.0] } else { &[1.0] };
     let first = (least / every).floor() as i64;
     let last = (most / every).ceil() as i64;
     let marks = (first..=last).flat_map(|n| within.iter().map(move |factor| n as f64 * every + factor.log10()));
@@ -333,7 +335,7 @@ mod tests {
 
     #[test]
     fn marks_of_a_logarithmic_axis_are_powers_of_ten() {
-        let texts = |bounds| decades(GridInput { bounds, base_step_size: 0.1 }).into_iter().map(decade).collect::<Vec<_>>();
+        let texts = |bounds| decades(GridInput { bounds, base_step_size: 0.1 }, 6.0).into_iter().map(decade).collect::<Vec<_>>();
         assert_eq!(texts((-2.2, 1.5)), ["0.01", "0.1", "1", "10"]);
         assert_eq!(texts((0.1, 0.9)), ["2", "5"]);
         assert_eq!(texts((-9.5, -3.0)), ["10⁻⁸", "10⁻⁶", "10⁻⁴"]);

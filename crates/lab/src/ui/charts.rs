@@ -70,7 +70,7 @@ fn one(ui: &mut Ui, model: &mut Model, chart: &Chart, run: u64, ink: Color32) {
     let note = language.phrase(&chart.note);
     let lines = if note.is_empty() { 0.0 } else { note_height(ui, note) };
     let height = ui.available_height() - lines;
-    let look = Look { theme: model.preferences.theme, language, height: height.max(90.0), width: ui.available_width(), large: true };
+    let look = Look { theme: model.preferences.theme, language, height: height.max(90.0), width: ui.available_width() - 10.0, large: true };
     let response = plot(ui, chart, run, &look);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, language.phrase(&chart.title)));
     if !note.is_empty() {
@@ -88,7 +88,8 @@ fn note_height(ui: &Ui, note: &str) -> f32 {
 fn key(ui: &mut Ui, model: &Model, chart: &Chart) {
     let theme = model.preferences.theme;
     ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing = vec2(4.0, 1.0);
+        ui.spacing_mut().item_spacing = vec2(4.0, 2.0);
+        ui.spacing_mut().interact_size.y = 15.0;
         for (series, face) in chart.series.iter().zip(faces(chart, theme)) {
             let name = model.language().phrase(&series.name);
             // A sign and its name stay on one line.

@@ -91,7 +91,7 @@ fn card(ui: &mut Ui, model: &Model, check: &Check, ready: bool) {
         ui.horizontal(|ui| {
             let measured = with_error(check.measured, check.standard_error);
             ui.label(RichText::new(format!("{measured}{unit}")).font(FontId::new(14.0, bold())));
-            ui.label(RichText::new(format!("{} {relation}{}", language.text(Text::Theory), significant(check.expected, 5))).color(colours.quiet));
+            ui.label(RichText::new(format!("{} {relation}{}", language.text(Text::Theory), significant(check.expected, 4))).color(colours.quiet));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 if let Some(z) = check.z {
                     score(ui, z, colour, &colours);
@@ -106,9 +106,9 @@ fn card(ui: &mut Ui, model: &Model, check: &Check, ready: bool) {
 
 /// Where z lies between the limits, drawn and written.
 fn score(ui: &mut Ui, z: f64, colour: Color32, colours: &Colours) {
-    let (rect, response) = ui.allocate_exact_size(vec2(118.0, 18.0), Sense::hover());
+    let (rect, response) = ui.allocate_exact_size(vec2(104.0, 18.0), Sense::hover());
     let painter = ui.painter();
-    let scale = Rect::from_min_max(pos2(rect.left(), rect.center().y - 2.0), pos2(rect.left() + 58.0, rect.center().y + 2.0));
+    let scale = Rect::from_min_max(pos2(rect.left(), rect.center().y - 2.0), pos2(rect.left() + 48.0, rect.center().y + 2.0));
     painter.rect_filled(scale, 2.0, colours.hovered);
     for sign in [-0.5f32, 0.0, 0.5] {
         let x = scale.center().x + sign * scale.width();

@@ -70,13 +70,15 @@ fn one(ui: &mut Ui, model: &mut Model, seen: &Snapshot, parameter: &'static Para
         Some(Fault::Refused { key, expected }) if key == parameter.name => Some(expected.clone()),
         _ => None,
     };
-    let unit = if parameter.unit.is_empty() { String::new() } else { format!("  {}", parameter.unit) };
     let help = format!("{}\n{}", language.phrase(parameter.help), range(model, parameter));
     let mut chosen = None;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         let ink = if refused.is_some() { colours.bad } else { colours.ink };
-        let label = ui.label(RichText::new(format!("{name}{unit}")).color(ink)).on_hover_text(&help);
+        let label = ui.label(RichText::new(&name).color(ink)).on_hover_text(&help);
+        if !parameter.unit.is_empty() {
+            ui.label(RichText::new(parameter.unit).color(colours.quiet).small());
+        }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             // The place is kept, so that nothing moves when a value is no longer the default.
             ui.scope(|ui| {
@@ -111,7 +113,7 @@ fn range(model: &Model, parameter: &Parameter) -> String {
     match parameter.kind {
         Kind::Real { least, most, .. } => language.fill(Text::Range, &[&significant(least, 4), &significant(most, 4)]),
         Kind::Whole { least, most, .. } => language.fill(Text::Range, &[&least.to_string(), &most.to_string()]),
-        Kind::Choice { options, .. } => options.iter().map(|word| language.key(word)).collect::<Vec<_>>().join(" · "),
+        Kind::Choice { options, .. } => options.iter().map(|word| language.choice(word)).collect::<Vec<_>>().join(" · "),
         Kind::Flag { .. } => String::new(),
         Kind::List { least, most, longest, .. } => {
             language.fill(Text::ListRange, &[&longest.to_string(), &significant(least, 4), &significant(most, 4)])
@@ -152,10 +154,10 @@ fn field(ui: &mut Ui, model: &mut Model, parameter: &Parameter, value: &Value, l
         }
         (Kind::Choice { options, .. }, Value::Word(word)) => {
             let mut changed = word.clone();
-            let combo = ComboBox::from_id_salt(parameter.name).width(118.0).selected_text(language.key(word));
+            let combo = ComboBox::from_id_salt(parameter.name).width(118.0).selected_text(language.choice(word));
             let response = combo.show_ui(ui, |ui| {
                 for option in options {
-                    ui.selectable_value(&mut changed, (*option).to_owned(), language.key(option));
+                    ui.selectable_value(&mut changed, (*option).to_owned(), language.choice(option));
                 }
             });
             response.response.labelled_by(label).on_hover_text(help);

@@ -42,7 +42,7 @@ pub(super) fn command_button(ui: &mut Ui, model: &Model, icon: Icon, command: Co
 pub(super) fn section(ui: &mut Ui, colours: &Colours, words: &str) {
     ui.add_space(6.0);
     ui.label(RichText::new(words).font(FontId::new(12.0, bold())).color(colours.quiet));
-    ui.add_space(-2.0);
+    ui.add_space(3.0);
 }
 
 /// Text of less weight, which wraps.
