@@ -77,7 +77,13 @@ impl From<LanguageName> for Language {
 }
 
 /// A window as nobody has changed it: not even the person whose machine it is, so that a picture is the same everywhere.
-pub(crate) fn studio(registry: Registry, scenario: Scenario, size: Size, theme: Theme, language: Language) -> Result<Studio, RenderError> {
+pub(crate) fn studio(
+    registry: Registry,
+    scenario: Scenario,
+    size: Size,
+    theme: Theme,
+    language: Language,
+) -> Result<Studio, RenderError> {
     let preferences = Preferences { language, theme, hints_seen: u8::MAX, ..Preferences::default() };
     let view = StudioView { size: [size.width, size.height], scale: 1.0, preferences, ..StudioView::default() };
     Studio::new(registry, scenario, view)

@@ -77,14 +77,15 @@ fn the_five_experiments_from_the_keyboard_alone() {
     }
 }
 
-/// A gas of 100,000 in the engine, and keys are still heard within a fraction of a second.
+/// Two baths of 50,000 in the engine, faster than it can be, and keys are still heard: software OpenGL and the engine share the
+/// machine, so that the bound is a generous one.
 #[test]
 fn the_window_never_waits_for_a_saturated_engine() {
     let folder = tempfile::tempdir().unwrap();
     let display = Display::of_size("1280x800");
     let mut command = display.command(env!("CARGO_BIN_EXE_corpuscle"));
     command.current_dir(folder.path()).env("XDG_CONFIG_HOME", folder.path()).env("HOME", folder.path());
-    let words = ["lab", "ideal-gas", "--set", "particles=2000", "--set", "packing_fraction=0.2"];
+    let words = ["lab", "brownian", "--set", "particles=50000", "--set", "replicas=2"];
     let child = command.args(words).stdout(Stdio::null()).spawn().unwrap();
     display.focus("Corpuscle");
     display.wait_for("the window", |pixels| pixels.colours() > 200);

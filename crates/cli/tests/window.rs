@@ -120,6 +120,9 @@ fn a_display_without_opengl_is_explained() {
             .unwrap();
         let complaint = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(1), "{complaint}");
-        assert!(complaint.contains("OpenGL") && complaint.contains("install lib") && !complaint.contains("panicked"), "{complaint}");
+        assert!(
+            complaint.contains("OpenGL") && complaint.contains("install lib") && !complaint.contains("panicked"),
+            "{complaint}"
+        );
     }
 }

@@ -41,14 +41,25 @@ fn draw(folder: &std::path::Path, words: &[String]) -> Result<(), Box<dyn std::e
     std::fs::create_dir_all(folder)?;
     let experiments: Vec<_> = REGISTRY.iter().map(|experiment| (experiment.name, *experiment)).collect();
     let named = chosen(words, &experiments);
-    let named = if words.iter().any(|word| experiments.iter().any(|(name, _)| name == word)) { named } else { chosen(&experiments.iter().map(|(name, _)| (*name).to_owned()).collect::<Vec<_>>(), &experiments) };
+    let named = if words.iter().any(|word| experiments.iter().any(|(name, _)| name == word)) {
+        named
+    } else {
+        chosen(&experiments.iter().map(|(name, _)| (*name).to_owned()).collect::<Vec<_>>(), &experiments)
+    };
     let themes = chosen(words, &[("dark", Theme::Dark), ("light", Theme::Light), ("projector", Theme::Projector)]);
     let sizes = chosen(words, &[("small", [1280, 800]), ("large", [1920, 1080])]);
     let languages = chosen(words, &[("english", Language::English), ("chinese", Language::Chinese)]);
-    let tabs = chosen(words, &[("charts", Tab::Charts), ("checks", Tab::Checks), ("honesty", Tab::Honesty), ("notebook", Tab::Notebook)]);
+    let tabs =
+        chosen(words, &[("charts", Tab::Charts), ("checks", Tab::Checks), ("honesty", Tab::Honesty), ("notebook", Tab::Notebook)]);
     let overlays = chosen(
         words,
-        &[("", Overlay::None), ("gallery", Overlay::Gallery), ("help", Overlay::Help), ("record", Overlay::Record), ("save", Overlay::Save)],
+        &[
+            ("", Overlay::None),
+            ("gallery", Overlay::Gallery),
+            ("help", Overlay::Help),
+            ("record", Overlay::Record),
+            ("save", Overlay::Save),
+        ],
     );
     for (name, experiment) in &named {
         for (theme_name, theme) in &themes {

@@ -35,6 +35,8 @@ pub enum Command {
     ZoomIn,
     /// Farther.
     ZoomOut,
+    /// Other colours for the bodies.
+    NextPaint,
     /// The next tool.
     NextTool,
     /// Start, stop and clear the stopwatch.
@@ -117,6 +119,7 @@ pub static BINDINGS: &[Binding] = &[
     key(&[Key::F], "F", Command::Fit, Text::DoFit),
     key(&[Key::PageUp], "PgUp", Command::ZoomIn, Text::DoZoomIn),
     key(&[Key::PageDown], "PgDn", Command::ZoomOut, Text::DoZoomOut),
+    key(&[Key::K], "K", Command::NextPaint, Text::DoNextPaint),
     key(&[Key::T], "T", Command::NextTool, Text::DoNextTool),
     key(&[Key::W], "W", Command::Stopwatch, Text::DoStopwatch),
     key(&[Key::N], "N", Command::RecordRow, Text::DoRecordRow),
@@ -163,7 +166,10 @@ pub fn pressed(context: &egui::Context) -> Vec<Command> {
         for event in &input.events {
             let egui::Event::Key { key, pressed: true, modifiers, repeat, .. } = event else { continue };
             let binding = BINDINGS.iter().find(|binding| {
-                binding.keys.contains(key) && binding.with_command == modifiers.command && !modifiers.alt && right_slash(*key, *modifiers)
+                binding.keys.contains(key)
+                    && binding.with_command == modifiers.command
+                    && !modifiers.alt
+                    && right_slash(*key, *modifiers)
             });
             if let Some(binding) = binding
                 && meant(binding, *key)

@@ -28,7 +28,16 @@ pub struct Film {
 
 impl Default for Film {
     fn default() -> Self {
-        Self { path: "film.mp4".into(), from: 0.0, until: 0.0, seconds: 10.0, fps: 30.0, size: [1280, 720], panels: false, light: false }
+        Self {
+            path: "film.mp4".into(),
+            from: 0.0,
+            until: 0.0,
+            seconds: 10.0,
+            fps: 30.0,
+            size: [1280, 720],
+            panels: false,
+            light: false,
+        }
     }
 }
 

@@ -78,6 +78,15 @@ impl Language {
         }
     }
 
+    /// The name of an experiment's parameter: `wave.masses` may be called otherwise than `masses`.
+    pub fn parameter(self, experiment: &str, key: &str) -> String {
+        let own = format!("{experiment}.{key}");
+        match (self, phrases::chinese(&own)) {
+            (Self::Chinese, Some(name)) => name.to_owned(),
+            _ => self.key(key),
+        }
+    }
+
     /// The name of a choice such as `gauss-radau-15`.
     pub fn choice(self, word: &str) -> String {
         if let (Self::Chinese, Some(name)) = (self, phrases::chinese(word)) {

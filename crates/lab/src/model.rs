@@ -13,7 +13,7 @@ use crate::film::Film;
 use crate::language::{Language, Text};
 use crate::notebook::Notebook;
 use crate::preferences::Preferences;
-use crate::runner::{Order, Snapshot};
+use crate::runner::{Order, Paint, Snapshot};
 use crate::tools::{Stopwatch, Tool};
 
 /// Factor of one press of the keys for faster and slower.
@@ -101,6 +101,8 @@ pub struct Model {
     pub camera: Option<Camera>,
     /// The body that is followed.
     pub followed: Option<usize>,
+    /// What the bodies' colours tell.
+    pub paint: Paint,
     /// What the pointer does on the stage.
     pub tool: Tool,
     /// Ends of the ruler.
@@ -154,6 +156,7 @@ impl Model {
             overlay: Overlay::None,
             camera: None,
             followed: None,
+            paint: Paint::default(),
             tool: Tool::default(),
             ruler: None,
             probe: None,
@@ -238,6 +241,10 @@ impl Model {
             Command::Fit => (self.camera, self.followed) = (None, None),
             Command::ZoomIn => self.zoom(ZOOM, seen),
             Command::ZoomOut => self.zoom(1.0 / ZOOM, seen),
+            Command::NextPaint => {
+                self.paint = self.paint.next();
+                self.order(Order::Paint(self.paint));
+            }
             Command::NextTool => self.tool = self.tool.next(),
             Command::Stopwatch => self.stopwatch = self.stopwatch.pressed(seen.time),
             Command::RecordRow => {

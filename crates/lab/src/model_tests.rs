@@ -13,10 +13,10 @@ fn orders(model: &mut Model) -> String {
         Order::Play(on) => format!("play {on}"),
         Order::Speed(factor) => format!("speed {factor}"),
         Order::Step => "step".into(),
+        Order::Paint(paint) => format!("{paint:?}"),
         Order::NextEvent => "next".into(),
         Order::Act(action) => format!("{action:?}"),
         Order::GoTo(time) => format!("to {time}"),
-        Order::Measure => "measure".into(),
     };
     model.take_orders().iter().map(word).collect::<Vec<_>>().join(", ")
 }
@@ -78,7 +78,9 @@ fn another_experiment_begins_afresh() {
 #[test]
 fn the_same_key_closes_what_it_opened() {
     let mut model = model();
-    for (command, overlay) in [(Command::Help, Overlay::Help), (Command::Gallery, Overlay::Gallery), (Command::Record, Overlay::Record)] {
+    for (command, overlay) in
+        [(Command::Help, Overlay::Help), (Command::Gallery, Overlay::Gallery), (Command::Record, Overlay::Record)]
+    {
         model.obey(command, &at(0.0));
         assert_eq!(model.overlay, overlay);
         model.obey(command, &at(0.0));

@@ -124,7 +124,11 @@ impl Notebook {
             return fit::line(&weighted).map(|line| Fit { line, weighted: true, points: weighted.len() });
         }
         let plain: Vec<_> = points.iter().map(|(x, y)| (x.value, y.value)).collect();
-        (plain.len() > 2).then(|| fit::line_by_scatter(&plain)).flatten().map(|line| Fit { line, weighted: false, points: plain.len() })
+        (plain.len() > 2).then(|| fit::line_by_scatter(&plain)).flatten().map(|line| Fit {
+            line,
+            weighted: false,
+            points: plain.len(),
+        })
     }
 
     /// The notebook as a table, errors in columns of their own.

@@ -2,6 +2,7 @@
 
 pub(crate) mod driver;
 mod exchange;
+pub mod paint;
 pub mod snapshot;
 
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -10,9 +11,10 @@ use std::time::{Duration, Instant};
 
 use corpuscle_io::{Refusal, Scenario};
 
-pub use driver::Order;
 use driver::Driver;
+pub use driver::Order;
 use exchange::{Reader, Writer, exchange};
+pub use paint::Paint;
 pub use snapshot::{Fault, Measured, Snapshot};
 
 /// What the simulation takes at most between two looks for orders, where it can stop.
@@ -98,11 +100,8 @@ fn work(mut driver: Driver, orders: &Receiver<Order>, mut writer: Writer<Snapsho
     let mut pace = 1.0;
     let mut waited = Duration::ZERO;
     loop {
-        let order = if driver.is_busy() {
-            orders.recv_timeout(waited)
-        } else {
-            orders.recv().map_err(|_| RecvTimeoutError::Disconnected)
-        };
+        let order =
+            if driver.is_busy() { orders.recv_timeout(waited) } else { orders.recv().map_err(|_| RecvTimeoutError::Disconnected) };
         let idle = !driver.is_busy();
         match order {
             Ok(order) => {

@@ -116,7 +116,9 @@ impl Studio {
     fn pass(&mut self) -> Result<(), RenderError> {
         self.surface.bind()?;
         let pixels = self.view.scale;
-        let size = egui::vec2(self.view.size[0] as f32, self.view.size[1] as f32) / pixels;
+        crate::window::dress(&self.context, &self.model);
+        let zoom = crate::window::zoom(&self.model);
+        let size = egui::vec2(self.view.size[0] as f32, self.view.size[1] as f32) / (pixels * zoom);
         let mut input = RawInput {
             screen_rect: Some(Rect::from_min_size(pos2(0.0, 0.0), size)),
             time: Some(f64::from(self.frames)),
@@ -125,7 +127,6 @@ impl Studio {
         };
         input.viewports.insert(ViewportId::ROOT, ViewportInfo { native_pixels_per_point: Some(pixels), ..ViewportInfo::default() });
         self.frames += 1;
-        crate::window::dress(&self.context, &self.model);
         let Self { context, glow, painter, model, previews, seen, .. } = self;
         let mut output = context.clone().run_ui(input, |ui| {
             let mut register = |texture| glow.register_native_texture(texture);

@@ -73,7 +73,11 @@ fn depth(place: [f64; 3], projection: &Projection) -> f64 {
 }
 
 fn pixels_of(length: f64, place: [f64; 3], projection: &Projection) -> f64 {
-    if projection.is_spatial() { length * projection.focal() / (projection.distance + depth(place, projection)) } else { length * projection.scale }
+    if projection.is_spatial() {
+        length * projection.focal() / (projection.distance + depth(place, projection))
+    } else {
+        length * projection.scale
+    }
 }
 
 /// What a probe found in its rectangle.
@@ -103,7 +107,8 @@ pub fn probe(scene: &Scene, corners: [[f64; 2]; 2]) -> Reading {
         .map(|(_, v)| v)
         .collect();
     let n = inside.len() as f64;
-    let flow: [f64; 2] = std::array::from_fn(|k| if inside.is_empty() { 0.0 } else { inside.iter().map(|v| v[k]).sum::<f64>() / n });
+    let flow: [f64; 2] =
+        std::array::from_fn(|k| if inside.is_empty() { 0.0 } else { inside.iter().map(|v| v[k]).sum::<f64>() / n });
     let temperature = (inside.len() > 1).then(|| {
         let squares: f64 = inside.iter().flat_map(|v| (0..2).map(|k| (v[k] - flow[k]).powi(2))).sum();
         let freedom = 2.0 * (n - 1.0);

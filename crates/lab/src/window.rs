@@ -98,7 +98,12 @@ pub fn open(registry: Registry, options: Options) -> Result<(), LabError> {
 /// Fonts, colours and sizes as the model has them.
 pub(crate) fn dress(context: &egui::Context, model: &Model) {
     model.preferences.theme.apply(context);
-    context.set_zoom_factor(model.preferences.scale * model.preferences.theme.enlargement());
+    context.set_zoom_factor(zoom(model));
+}
+
+/// By how much everything is larger than usual.
+pub(crate) fn zoom(model: &Model) -> f32 {
+    model.preferences.scale * model.preferences.theme.enlargement()
 }
 
 /// eframe's words, with the package that helps.

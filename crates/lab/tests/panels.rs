@@ -153,9 +153,12 @@ fn whatever_can_be_pressed_has_a_name_and_a_place() {
     use egui::accesskit::Role;
     use egui_kittest::kittest::{By, NodeT};
     let pressable = |role| matches!(role, Role::Button | Role::Slider | Role::SpinButton | Role::ComboBox | Role::TextInput);
-    for (language, size) in [(Language::English, [1280.0, 800.0]), (Language::Chinese, [1280.0, 800.0]), (Language::Chinese, [1920.0, 1080.0])] {
+    for (language, size) in
+        [(Language::English, [1280.0, 800.0]), (Language::Chinese, [1280.0, 800.0]), (Language::Chinese, [1920.0, 1080.0])]
+    {
         for experiment in REGISTRY.iter().take(5) {
-            let set: &[(&str, &str)] = if experiment.name == "wave" || experiment.name == "three-body" { &[] } else { &[("replicas", "2")] };
+            let set: &[(&str, &str)] =
+                if experiment.name == "wave" || experiment.name == "three-body" { &[] } else { &[("replicas", "3")] };
             let mut harness = window(experiment.name, set, language, size);
             for (tab, ..) in Tab::ALL {
                 harness.state_mut().model.tab = tab;

@@ -77,7 +77,9 @@ fn every_experiment_looks_as_it_did_when_somebody_looked() {
     let write = std::env::var_os("CORPUSCLE_REFERENCES").is_some();
     let mut wrong = vec![];
     for name in ["brownian", "entropy", "ideal-gas", "three-body", "wave"] {
-        for (theme, language, kind) in [(Theme::Dark, Language::English, "dark-english"), (Theme::Light, Language::Chinese, "light-chinese")] {
+        for (theme, language, kind) in
+            [(Theme::Dark, Language::English, "dark-english"), (Theme::Light, Language::Chinese, "light-chinese")]
+        {
             let now = reduced(&window(name, theme, language));
             let path = folder.join(format!("{name}-{kind}.png"));
             if write {

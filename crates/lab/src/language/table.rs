@@ -57,6 +57,7 @@ table! {
     DoFit: "Everything in view", "显示全部";
     DoZoomIn: "Nearer", "放大";
     DoZoomOut: "Farther", "缩小";
+    DoNextPaint: "Colour the bodies otherwise", "更换粒子着色";
     DoNextTool: "Next tool", "下一个工具";
     DoStopwatch: "Stopwatch: start, stop, clear", "秒表：开始、停止、清零";
     DoRecordRow: "Record a row", "记录一行";
@@ -160,6 +161,9 @@ table! {
     Ordinate: "y", "y";
 
     // Stage.
+    PaintOwn: "as the experiment chooses", "按实验设定";
+    PaintSpeed: "by speed", "按速率";
+    PaintPlain: "all alike", "统一颜色";
     Following: "Following body", "跟随粒子";
     Body: "Body", "粒子";
     Radius: "radius", "半径";

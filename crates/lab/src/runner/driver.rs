@@ -9,6 +9,7 @@ use std::sync::Arc;
 use corpuscle_experiments::{Action, Simulation};
 use corpuscle_io::{Refusal, Scenario};
 
+use super::paint::Paint;
 use super::snapshot::{Fault, Measured, Snapshot};
 
 /// Parts the way to a picture is advanced in, so that there is a place to stop.
@@ -33,10 +34,10 @@ pub enum Order {
     NextEvent,
     /// Do something to the system, now.
     Act(Action),
+    /// Let the bodies' colours tell something else.
+    Paint(Paint),
     /// Go to a physical time, back or forth, as fast as the engine can.
     GoTo(f64),
-    /// Measure now, whatever it costs: a picture is about to be taken.
-    Measure,
 }
 
 /// A running experiment as a viewer sees it.
@@ -51,6 +52,9 @@ pub(crate) struct Driver {
     factor: f64,
     /// How far a stride on the way to a chosen time goes.
     stride: f64,
+    /// What the colours tell, and the upper end of their scale.
+    paint: Paint,
+    most: Option<f64>,
     seen: Snapshot,
 }
 
@@ -65,6 +69,8 @@ impl Driver {
             ahead: 0,
             factor: 1.0,
             stride: 0.0,
+            paint: Paint::default(),
+            most: None,
             seen: Snapshot { pace: 1.0, ..Snapshot::default() },
         };
         driver.begin();
@@ -91,6 +97,7 @@ impl Driver {
         let start = self.simulation.time();
         let end = self.scenario.duration.unwrap_or_else(|| self.simulation.end());
         self.seen.run += 1;
+        self.most = None;
         self.seen.scene = corpuscle_scene::Scene::default();
         (self.seen.time, self.seen.start, self.seen.end) = (start, start, end.max(start));
         self.seen.speed = self.seen.usual_speed() * self.factor;
@@ -204,8 +211,8 @@ impl Driver {
             }
             Order::NextEvent => self.next_event(),
             Order::Act(action) => self.act(action),
+            Order::Paint(paint) => (self.paint, self.most) = (paint, None),
             Order::GoTo(time) => self.go_to(time),
-            Order::Measure => self.measure(),
         }
     }
 
@@ -284,6 +291,7 @@ impl Driver {
     pub(crate) fn look(&mut self) {
         self.seen.look += 1;
         self.simulation.draw(&mut self.seen.scene);
+        self.paint.apply(&mut self.seen.scene, &mut self.most);
     }
 }
 

@@ -54,9 +54,11 @@ fn ends(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
         }
     });
     named(&languages.response, model.text(Text::LanguageOf));
-    for (icon, command, text) in
-        [(Icon::Record, Command::Record, Text::DoRecord), (Icon::Save, Command::Save, Text::DoSave), (Icon::Open, Command::Open, Text::DoOpen)]
-    {
+    for (icon, command, text) in [
+        (Icon::Record, Command::Record, Text::DoRecord),
+        (Icon::Save, Command::Save, Text::DoSave),
+        (Icon::Open, Command::Open, Text::DoOpen),
+    ] {
         if command_button(ui, model, icon, command, text) {
             model.obey(command, seen);
         }

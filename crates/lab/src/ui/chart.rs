@@ -1,10 +1,13 @@
 //! One chart: theory as a line, measurement as points, bars or a line with its band of one standard error.
 
-use corpuscle_observe::chart::{Axis, Scale, Series, Style};
 use corpuscle_observe::Chart;
+use corpuscle_observe::chart::{Axis, Scale, Series, Style};
 use corpuscle_scene::{Colour, okabe_ito};
 use egui::{Color32, Stroke, Ui, vec2};
-use egui_plot::{AxisHints, Bar, BarChart, FilledArea, GridInput, GridMark, HPlacement, HoverPosition, Line, LineStyle, Plot, PlotPoints, PlotUi, Points};
+use egui_plot::{
+    AxisHints, Bar, BarChart, FilledArea, GridInput, GridMark, HPlacement, HoverPosition, Line, LineStyle, Plot, PlotPoints,
+    PlotUi, Points,
+};
 
 use crate::language::{Language, Text};
 use crate::number::{power_of_ten, significant, tick, with_error};
@@ -61,7 +64,10 @@ pub(super) fn show(ui: &mut Ui, chart: &Chart, run: u64, look: &Look) -> egui::R
         .show_background(false)
         .set_margin_fraction(vec2(0.03, 0.06))
         .custom_x_axes(vec![hints(&chart.x, AxisHints::new_x())])
-        .custom_y_axes(vec![hints(&chart.y, AxisHints::new_y().placement(HPlacement::Left).min_thickness(if look.large { 46.0 } else { 38.0 }))])
+        .custom_y_axes(vec![hints(
+            &chart.y,
+            AxisHints::new_y().placement(HPlacement::Left).min_thickness(if look.large { 46.0 } else { 38.0 }),
+        )])
         .x_grid_spacer(spacing(&chart.x, look.width - 50.0, 46.0))
         .y_grid_spacer(spacing(&chart.y, look.height - 30.0, if look.large { 24.0 } else { 18.0 }))
         .grid_spacing(8.0..=30.0)
@@ -96,7 +102,8 @@ pub(super) struct Face {
 /// A face for each series: each theory in the colour of its measurement when there are as many of either; in ink otherwise.
 pub(super) fn faces(chart: &Chart, theme: Theme) -> Vec<Face> {
     let theories = chart.series.iter().filter(|series| series.style == Style::Theory).count();
-    let alternates = chart.series.chunks(2).all(|pair| pair.len() == 2 && pair[0].style == Style::Theory && pair[1].style != Style::Theory);
+    let alternates =
+        chart.series.chunks(2).all(|pair| pair.len() == 2 && pair[0].style == Style::Theory && pair[1].style != Style::Theory);
     let paired = theories > 1 && alternates;
     let (mut theory, mut measured) = (0, 0);
     let next = |count: &mut usize| std::mem::replace(count, *count + 1);
@@ -142,7 +149,13 @@ fn draw<'a>(plot: &mut PlotUi<'a>, series: &'a Series, face: Face, look: &Look, 
         Style::Points => {
             error_bars(plot, series, colour, look, x, y);
             let points: Vec<[f64; 2]> = runs(series, x, y).into_iter().flatten().collect();
-            let radius = if points.len() > 200 { 1.4 } else if look.large { 2.8 } else { 2.0 };
+            let radius = if points.len() > 200 {
+                1.4
+            } else if look.large {
+                2.8
+            } else {
+                2.0
+            };
             plot.points(Points::new(&series.name, PlotPoints::from(points)).color(colour).radius(radius * width / 1.6));
         }
         Style::Bars => {
@@ -219,7 +232,9 @@ fn error_bars<'a>(plot: &mut PlotUi<'a>, series: &'a Series, colour: Color32, lo
         // On a logarithmic axis a bar may reach down to where there is no place: it then ends at the point.
         let low = Some(y(value - error)).filter(|low| low.is_finite()).unwrap_or(y(value));
         if a.is_finite() && low.is_finite() && high.is_finite() {
-            plot.line(Line::new(&series.name, PlotPoints::from(vec![[a, low], [a, high]])).color(colour).width(width).allow_hover(false));
+            plot.line(
+                Line::new(&series.name, PlotPoints::from(vec![[a, low], [a, high]])).color(colour).width(width).allow_hover(false),
+            );
         }
     }
 }
@@ -284,7 +299,8 @@ fn hover(chart: &Chart, position: &HoverPosition<'_>, language: Language) -> Opt
     let series = chart.series.iter().find(|series| series.name == **plot_name)?;
     let nearest = (0..series.x.len()).min_by(|&a, &b| (series.x[a] - x).abs().total_cmp(&(series.x[b] - x).abs()))?;
     let error = series.standard_error.get(nearest).copied().filter(|error| error.is_finite() && *error > 0.0);
-    let mut lines = vec![language.phrase(&series.name).to_owned(), format!("{} = {}", axis_name(&chart.x, language), significant(x, 4))];
+    let mut lines =
+        vec![language.phrase(&series.name).to_owned(), format!("{} = {}", axis_name(&chart.x, language), significant(x, 4))];
     lines.push(format!("{} = {}", axis_name(&chart.y, language), with_error(y, error)));
     if series.style != Style::Theory
         && let Some(theory) = theory_beside(chart, series, x)

@@ -70,7 +70,13 @@ fn one(ui: &mut Ui, model: &mut Model, chart: &Chart, run: u64, ink: Color32) {
     let note = language.phrase(&chart.note);
     let lines = if note.is_empty() { 0.0 } else { note_height(ui, note) };
     let height = ui.available_height() - lines;
-    let look = Look { theme: model.preferences.theme, language, height: height.max(90.0), width: ui.available_width() - 10.0, large: true };
+    let look = Look {
+        theme: model.preferences.theme,
+        language,
+        height: height.max(90.0),
+        width: ui.available_width() - 10.0,
+        large: true,
+    };
     let response = plot(ui, chart, run, &look);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, language.phrase(&chart.title)));
     if !note.is_empty() {
@@ -137,7 +143,13 @@ fn tile(ui: &mut Ui, model: &Model, chart: &Chart, run: u64, rect: Rect) -> bool
     ui.scope_builder(UiBuilder::new().max_rect(inner), |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         ui.add(egui::Label::new(RichText::new(title).font(FontId::new(11.5, bold()))).truncate());
-        let look = Look { theme: model.preferences.theme, language, height: ui.available_height(), width: ui.available_width(), large: false };
+        let look = Look {
+            theme: model.preferences.theme,
+            language,
+            height: ui.available_height(),
+            width: ui.available_width(),
+            large: false,
+        };
         chosen |= plot(ui, chart, run, &look).clicked();
     });
     response.on_hover_text(model.text(Text::MakeLarge));

@@ -74,7 +74,11 @@ fn card(ui: &mut Ui, model: &Model, check: &Check, ready: bool) {
     let colours = model.preferences.theme.colours();
     let language = model.language();
     let (mark, colour) = mark(check.passed, ready, &colours);
-    let frame = Frame::new().fill(colours.ground).stroke((1.0, colours.line)).corner_radius(5.0).inner_margin(egui::Margin::symmetric(9, 6));
+    let frame = Frame::new()
+        .fill(colours.ground)
+        .stroke((1.0, colours.line))
+        .corner_radius(5.0)
+        .inner_margin(egui::Margin::symmetric(9, 6));
     frame.show(ui, |ui| {
         ui.set_width(ui.available_width());
         ui.spacing_mut().item_spacing.y = 3.0;
@@ -91,7 +95,10 @@ fn card(ui: &mut Ui, model: &Model, check: &Check, ready: bool) {
         ui.horizontal(|ui| {
             let measured = with_error(check.measured, check.standard_error);
             ui.label(RichText::new(format!("{measured}{unit}")).font(FontId::new(14.0, bold())));
-            ui.label(RichText::new(format!("{} {relation}{}", language.text(Text::Theory), significant(check.expected, 4))).color(colours.quiet));
+            ui.label(
+                RichText::new(format!("{} {relation}{}", language.text(Text::Theory), significant(check.expected, 4)))
+                    .color(colours.quiet),
+            );
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 if let Some(z) = check.z {
                     score(ui, z, colour, &colours);

@@ -104,7 +104,9 @@ fn name(ui: &mut Ui, model: &mut Model, verb: Text) -> bool {
         if std::mem::take(&mut model.typed.fresh) {
             field.request_focus();
         }
-        let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+        // Enter is for the name, unless a button has the keyboard; a quick hand presses it before the field has.
+        let elsewhere = ui.ctx().memory(|memory| memory.focused().is_some_and(|id| id != field.id));
+        let entered = !elsewhere && ui.input(|input| input.key_pressed(Key::Enter));
         let pressed = ui.add_enabled(!model.typed.path.trim().is_empty(), egui::Button::new(model.text(verb))).clicked();
         (entered || pressed) && !model.typed.path.trim().is_empty()
     })

@@ -24,10 +24,14 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, previews: &Previews, easel: &
         ui.add_space(8.0);
         ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
             let width = ui.available_width() - 6.0;
-            let columns = ((width + GAP) / (WIDTH + GAP)).floor().max(1.0) as usize;
-            let card = (width - GAP * (columns - 1) as f32) / columns as f32;
-            let size = vec2(card, (0.6 * card).round() + WORDS);
             let registry = model.registry.clone();
+            let most = ((width + GAP) / (WIDTH + GAP)).floor().max(1.0) as usize;
+            // As many rows as that takes, and in each of them about the same number of cards, all in view where there is room.
+            let rows = registry.len().div_ceil(most).max(1);
+            let columns = registry.len().div_ceil(rows).max(1);
+            let card = (width - GAP * (columns - 1) as f32) / columns as f32;
+            let room = (ui.available_height() - GAP * rows as f32) / rows as f32;
+            let size = vec2(card, (0.62 * card).min((room - WORDS).max(0.45 * WIDTH)).round() + WORDS);
             for (row, experiments) in registry.chunks(columns).enumerate() {
                 ui.horizontal(|ui| {
                     ui.spacing_mut().item_spacing.x = GAP;

@@ -52,7 +52,8 @@ pub(crate) fn paint(painter: &Painter, icon: Icon, rect: Rect, colour: Color32) 
     let stroke = Stroke::new((side * 0.1).max(1.2), colour);
     let fill = |points: Vec<Pos2>| painter.add(Shape::convex_polygon(points, colour, Stroke::NONE));
     let path = |points: Vec<Pos2>| painter.add(Shape::line(points, stroke));
-    let bar = |x: f32, w: f32, top: f32, bottom: f32| painter.rect_filled(Rect::from_min_max(at(x, top), at(x + w, bottom)), 0.5, colour);
+    let bar =
+        |x: f32, w: f32, top: f32, bottom: f32| painter.rect_filled(Rect::from_min_max(at(x, top), at(x + w, bottom)), 0.5, colour);
     match icon {
         Icon::Play => drop(fill(vec![at(0.22, 0.1), at(0.88, 0.5), at(0.22, 0.9)])),
         Icon::Pause => {
@@ -91,7 +92,9 @@ pub(crate) fn paint(painter: &Painter, icon: Icon, rect: Rect, colour: Color32) 
             fill(vec![at(0.75, 0.6), at(0.75, 0.92), at(0.5, 0.6)]);
         }
         Icon::Fit => {
-            for (x, y, dx, dy) in [(0.12, 0.12, 1.0, 1.0), (0.88, 0.12, -1.0, 1.0), (0.12, 0.88, 1.0, -1.0), (0.88, 0.88, -1.0, -1.0)] {
+            for (x, y, dx, dy) in
+                [(0.12, 0.12, 1.0, 1.0), (0.88, 0.12, -1.0, 1.0), (0.12, 0.88, 1.0, -1.0), (0.88, 0.88, -1.0, -1.0)]
+            {
                 path(vec![at(x, y + 0.24 * dy), at(x, y), at(x + 0.24 * dx, y)]);
             }
             painter.circle_filled(at(0.5, 0.5), 0.12 * side, colour);

@@ -58,14 +58,17 @@ fn free(ui: &mut Ui, model: &Model) {
 }
 
 fn one(ui: &mut Ui, model: &mut Model, seen: &Snapshot, parameter: &'static Parameter) {
-    let Some((value, given)) =
-        model.scenario.parameters().find(|(known, ..)| known.name == parameter.name).map(|(_, value, given)| (value.clone(), given))
+    let Some((value, given)) = model
+        .scenario
+        .parameters()
+        .find(|(known, ..)| known.name == parameter.name)
+        .map(|(_, value, given)| (value.clone(), given))
     else {
         return;
     };
     let language = model.language();
     let colours = model.preferences.theme.colours();
-    let name = language.key(parameter.name);
+    let name = language.parameter(model.scenario.name(), parameter.name);
     let refused = match &seen.fault {
         Some(Fault::Refused { key, expected }) if key == parameter.name => Some(expected.clone()),
         _ => None,
@@ -148,7 +151,8 @@ fn field(ui: &mut Ui, model: &mut Model, parameter: &Parameter, value: &Value, l
         (Kind::Whole { least, most, .. }, &Value::Whole(n)) => {
             let n = pending(model, parameter, n as f64) as u64;
             let mut changed = n;
-            let field = DragValue::new(&mut changed).range(least..=most).speed(0.01 * (n as f64).max(5.0)).update_while_editing(false);
+            let field =
+                DragValue::new(&mut changed).range(least..=most).speed(0.01 * (n as f64).max(5.0)).update_while_editing(false);
             let response = ui.add(field).labelled_by(label).on_hover_text(help);
             settled(model, &response, parameter, changed as f64, changed != n).map(|n| Value::Whole(n as u64))
         }

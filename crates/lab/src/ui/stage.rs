@@ -2,7 +2,10 @@
 
 use corpuscle_render::{Projection, Rectangle, View, navigate};
 use corpuscle_scene::Camera;
-use egui::{Align2, Color32, FontId, Painter, PointerButton, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, UiBuilder, Vec2, pos2, vec2};
+use egui::{
+    Align2, Color32, FontId, Painter, PointerButton, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, UiBuilder, Vec2, pos2,
+    vec2,
+};
 
 use super::icons::Icon;
 use super::widgets::icon_button;
@@ -45,6 +48,7 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot, easel: &mut 
         hovered(ui, model, seen, &response, &projection, stage);
     }
     caption(ui, model, seen, strip);
+    colours(ui, model, seen, band);
     legend::paint(ui.painter(), band, &seen.scene, &projection, model.preferences.theme, model.language());
     tools(ui, model, seen, strip);
     stopwatch(&painter, model, seen, stage);
@@ -84,7 +88,8 @@ fn pointer(ui: &Ui, model: &mut Model, seen: &Snapshot, response: &Response, pro
         }
     }
     let way = response.drag_delta();
-    let moves = model.tool == Tool::Hand || response.dragged_by(PointerButton::Secondary) || response.dragged_by(PointerButton::Middle);
+    let moves =
+        model.tool == Tool::Hand || response.dragged_by(PointerButton::Secondary) || response.dragged_by(PointerButton::Middle);
     if response.dragged() && moves && way != Vec2::ZERO {
         model.followed = if projection.is_spatial() { model.followed } else { None };
         model.camera = Some(navigate::dragged(camera, projection, [f64::from(way.x), f64::from(way.y)]));
@@ -173,7 +178,13 @@ fn ruler(painter: &Painter, model: &Model, projection: &Projection, stage: Rect)
     let length = way.iter().map(|x| x * x).sum::<f64>().sqrt();
     let angle = way[1].atan2(way[0]).to_degrees();
     let angle = if projection.is_spatial() { String::new() } else { format!("   {}°", significant(angle, 3)) };
-    card(painter, model, a + 0.5 * (b - a) + vec2(0.0, -12.0), Align2::CENTER_BOTTOM, &format!("{}{angle}", significant(length, 4)));
+    card(
+        painter,
+        model,
+        a + 0.5 * (b - a) + vec2(0.0, -12.0),
+        Align2::CENTER_BOTTOM,
+        &format!("{}{angle}", significant(length, 4)),
+    );
 }
 
 fn probe_reading(painter: &Painter, model: &Model, seen: &Snapshot, projection: &Projection, stage: Rect) {
@@ -187,16 +198,23 @@ fn probe_reading(painter: &Painter, model: &Model, seen: &Snapshot, projection: 
         return;
     }
     let reading = probe(&seen.scene, corners);
-    let mut lines = vec![
-        format!("N = {}", reading.bodies),
-        format!("{} n = {}", model.text(Text::Density), significant(reading.density, 4)),
-    ];
+    let mut lines =
+        vec![format!("N = {}", reading.bodies), format!("{} n = {}", model.text(Text::Density), significant(reading.density, 4))];
     if let Some((mean, error)) = reading.temperature {
         lines.push(format!("k_B T/m = {}", with_error(mean, Some(error))));
-        lines.push(format!("{} = ({}, {})", model.text(Text::Flow), significant(reading.flow[0], 3), significant(reading.flow[1], 3)));
+        lines.push(format!(
+            "{} = ({}, {})",
+            model.text(Text::Flow),
+            significant(reading.flow[0], 3),
+            significant(reading.flow[1], 3)
+        ));
     }
     let right = rect.right() + 220.0 < stage.right();
-    let (at, align) = if right { (rect.right_top() + vec2(8.0, 0.0), Align2::LEFT_TOP) } else { (rect.left_top() - vec2(8.0, 0.0), Align2::RIGHT_TOP) };
+    let (at, align) = if right {
+        (rect.right_top() + vec2(8.0, 0.0), Align2::LEFT_TOP)
+    } else {
+        (rect.left_top() - vec2(8.0, 0.0), Align2::RIGHT_TOP)
+    };
     card(painter, model, at, align, &lines.join("\n"));
 }
 
@@ -222,6 +240,17 @@ fn caption(ui: &Ui, model: &Model, seen: &Snapshot, strip: Rect) {
     let galley = ui.painter().layout_job(job);
     let at = pos2(strip.left() + 14.0, strip.center().y - 0.5 * galley.size().y);
     ui.painter().galley(at, galley, colours.quiet);
+}
+
+/// A click on the legend colours the bodies otherwise.
+fn colours(ui: &Ui, model: &mut Model, seen: &Snapshot, band: Rect) {
+    let left = Rect::from_min_max(band.min, pos2(band.center().x, band.bottom()));
+    let response = ui.interact(left, ui.scope_id().with("legend"), Sense::click());
+    let name = format!("{}: {}", model.text(Text::DoNextPaint), model.text(model.paint.text()));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+    if response.on_hover_text(format!("{name}  ({})", Command::NextPaint.key())).clicked() {
+        model.obey(Command::NextPaint, seen);
+    }
 }
 
 /// The tools, at the right end of the strip above the stage.

@@ -16,7 +16,9 @@ const SLOW: f64 = 0.93;
 
 pub(super) fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
     ui.horizontal(|ui| {
-        for (icon, command, text) in [(Icon::Restart, Command::Restart, Text::DoRestart), (Icon::Reverse, Command::Reverse, Text::DoReverse)] {
+        for (icon, command, text) in
+            [(Icon::Restart, Command::Restart, Text::DoRestart), (Icon::Reverse, Command::Reverse, Text::DoReverse)]
+        {
             if command_button(ui, model, icon, command, text) {
                 model.obey(command, seen);
             }
@@ -53,7 +55,8 @@ fn speed(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
     let label = ui.label(model.text(Text::Speed));
     let mut factor = model.speed;
     ui.spacing_mut().slider_width = 96.0;
-    let slider = ui.add(Slider::new(&mut factor, 1e-2..=1e2).logarithmic(true).show_value(false).clamping(egui::SliderClamping::Never));
+    let slider =
+        ui.add(Slider::new(&mut factor, 1e-2..=1e2).logarithmic(true).show_value(false).clamping(egui::SliderClamping::Never));
     let slider = slider.labelled_by(label.id).on_hover_text(model.text(Text::SpeedHelp));
     if slider.changed() && factor != model.speed {
         model.set_speed(factor);
@@ -152,7 +155,7 @@ fn timeline(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
     }
     let handle = pos2(x_of(seen.time), line.center().y);
     painter.circle(handle, 6.0, colours.accent, Stroke::new(2.0, colours.panel));
-    let text = significant(seen.end, 4);
+    let text = significant(end, 4);
     painter.text(pos2(rect.right(), rect.center().y), Align2::RIGHT_CENTER, text, FontId::proportional(12.5), colours.quiet);
     if let (true, Some(at)) = (response.clicked() || response.drag_stopped(), response.interact_pointer_pos()) {
         let near = model.moments.iter().copied().find(|&moment| (x_of(moment) - at.x).abs() < 5.0);

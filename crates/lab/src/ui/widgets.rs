@@ -23,7 +23,12 @@ pub(super) fn sized_icon_button(ui: &mut Ui, icon: Icon, name: &str, key: &str, 
         let ink = if chosen { ui.visuals().selection.stroke.color } else { visuals.fg_stroke.color };
         ui.painter().rect_filled(rect, visuals.corner_radius, fill);
         if response.has_focus() {
-            ui.painter().rect_stroke(rect, visuals.corner_radius, ui.visuals().widgets.hovered.bg_stroke, egui::StrokeKind::Outside);
+            ui.painter().rect_stroke(
+                rect,
+                visuals.corner_radius,
+                ui.visuals().widgets.hovered.bg_stroke,
+                egui::StrokeKind::Outside,
+            );
         }
         let side = (size.y * 0.5).round();
         let inner = egui::Rect::from_center_size(rect.center(), vec2(side, side));
