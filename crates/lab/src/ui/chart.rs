@@ -18,6 +18,9 @@ const MOST: usize = 1600;
 /// Marks of error bars stop where points are denser than a person can tell apart.
 const BARS: usize = 400;
 
+/// Size of the names of axes.
+const NAME: f32 = 12.0;
+
 /// How a chart is to look.
 pub(super) struct Look {
     /// Colours.
@@ -41,9 +44,10 @@ pub(super) fn show(ui: &mut Ui, chart: &Chart, run: u64, look: &Look) -> egui::R
     let colours = look.theme.colours();
     let hints = |axis: &Axis, hints: AxisHints<'static>| {
         let logarithmic = axis.scale == Scale::Logarithmic;
-        let name = if look.large { axis_name(axis, look.language) } else { String::new() };
+        let room = if std::ptr::eq(axis, &chart.x) { look.width } else { look.height } - 34.0;
+        let name = if look.large { fitted(ui, &axis_name(axis, look.language), room) } else { String::new() };
         hints
-            .label(egui::RichText::new(name).size(12.0))
+            .label(egui::RichText::new(name).size(NAME))
             .tick_label_font(font.clone())
             .tick_label_color(colours.quiet)
             .label_spacing(8.0..=12.0)
@@ -245,6 +249,17 @@ fn scale(scale: Scale) -> fn(f64) -> f64 {
         Scale::Linear => |value| value,
         Scale::Logarithmic => |value| if value > 0.0 { value.log10() } else { f64::NAN },
     }
+}
+
+/// As much of a name as there is room for along its axis.
+fn fitted(ui: &Ui, name: &str, room: f32) -> String {
+    let width = |text: String| ui.painter().layout_no_wrap(text, egui::FontId::proportional(NAME), Color32::WHITE).size().x;
+    let mut kept = name.to_owned();
+    while width(kept.clone()) > room && kept.chars().count() > 2 {
+        kept = kept.trim_end_matches('…').chars().take(kept.chars().count().saturating_sub(2)).collect();
+        kept.push('…');
+    }
+    kept
 }
 
 /// The name of an axis with its unit.
