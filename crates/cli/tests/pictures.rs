@@ -130,6 +130,21 @@ fn the_whole_window_has_its_picture() {
 }
 
 #[test]
+fn a_film_of_the_whole_window_has_its_pictures() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments =
+        ["record", "wave", "--panels", "--size", "1280x720", "--fps", "1", "--speed", "5", "--to", "10s", "--out", "film"];
+    succeeded(&corpuscle(folder.path(), &arguments));
+    let pictures = names(&folder.path().join("film"));
+    assert_eq!(pictures, ["00000.png", "00001.png", "00002.png"]);
+    for name in &pictures {
+        let (width, height, colours) = look(&folder.path().join("film").join(name));
+        assert_eq!((width, height), (1280, 720));
+        assert!(colours > 200, "{name}: only {colours} colours");
+    }
+}
+
+#[test]
 fn without_a_display_a_window_is_refused_and_pictures_are_offered() {
     let folder = tempfile::tempdir().unwrap();
     if !cfg!(target_os = "linux") {

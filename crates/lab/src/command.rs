@@ -159,7 +159,7 @@ pub fn pressed(context: &egui::Context) -> Vec<Command> {
     let focused = context.egui_wants_keyboard_input();
     let meant = |binding: &Binding, key: Key| {
         let to_widget = matches!(key, Key::Space | Key::ArrowLeft | Key::ArrowRight);
-        !(typing && binding.command != Command::Close) && !(focused && to_widget)
+        (!typing || binding.command == Command::Close) && !(focused && to_widget)
     };
     context.input(|input| {
         let mut found = vec![];

@@ -12,10 +12,16 @@ use crate::ui::{Canvas, Easel};
 /// The textures of one OpenGL context.
 pub(crate) struct Painter {
     gl: Arc<glow::Context>,
-    /// Each with its name, and what is on it: the same look from the same view need not be drawn again.
-    canvases: HashMap<Canvas, (Backdrop, TextureId, Option<(u64, View)>)>,
+    canvases: HashMap<Canvas, Sheet>,
     /// The first thing that went wrong.
     pub(crate) fault: Option<RenderError>,
+}
+
+/// A texture, its name among the host's, and what is on it: the same look from the same view need not be drawn again.
+struct Sheet {
+    backdrop: Backdrop,
+    texture: TextureId,
+    painted: Option<(u64, View)>,
 }
 
 impl Painter {
@@ -35,16 +41,16 @@ impl Painter {
         if !self.canvases.contains_key(&canvas) {
             let backdrop = Backdrop::new(self.gl.clone())?;
             let texture = register(backdrop.texture());
-            self.canvases.insert(canvas, (backdrop, texture, None));
+            self.canvases.insert(canvas, Sheet { backdrop, texture, painted: None });
         }
-        let Some((backdrop, texture, painted)) = self.canvases.get_mut(&canvas) else {
+        let Some(sheet) = self.canvases.get_mut(&canvas) else {
             return Err(RenderError::OpenGl("a canvas is lost".into()));
         };
-        if painted.as_ref().is_none_or(|(known, of)| (*known, of) != (look, view)) {
-            backdrop.draw(scene, view)?;
-            *painted = Some((look, view.clone()));
+        if sheet.painted.as_ref().is_none_or(|(known, of)| (*known, of) != (look, view)) {
+            sheet.backdrop.draw(scene, view)?;
+            sheet.painted = Some((look, view.clone()));
         }
-        Ok(*texture)
+        Ok(sheet.texture)
     }
 
     /// Forgets the gallery's pictures while they are not shown.

@@ -193,7 +193,7 @@ impl Lab {
 
     /// Files dropped onto the window are opened.
     fn dropped(&mut self, context: &egui::Context) {
-        let path = context.input(|input| input.raw.dropped_files.iter().next().map(|file| file.path().to_owned()));
+        let path = context.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_owned()));
         if let Some(path) = path {
             self.model.open(&path);
         }

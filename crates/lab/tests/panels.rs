@@ -1,6 +1,6 @@
 //! The panels as a person meets them: by the names that a screen reader says, with clicks and keys, without OpenGL.
 
-#![allow(clippy::unwrap_used)] // in the helpers too: a test that cannot be set up has failed
+#![allow(clippy::unwrap_used, clippy::panic)] // in the helpers too: a test that cannot be set up has failed
 
 use corpuscle_experiments::{REGISTRY, find};
 use corpuscle_io::Scenario;

@@ -1,7 +1,7 @@
 //! The whole window against pictures that somebody has looked at: a quarter of the size, with a tolerance, since drivers differ in
 //! the last bit and fonts in a pixel. `CORPUSCLE_REFERENCES=write cargo test -p corpuscle-lab --test pictures` makes them anew.
 
-#![allow(clippy::unwrap_used)] // in the helpers too: a test that cannot be set up has failed
+#![allow(clippy::unwrap_used, clippy::panic)] // in the helpers too: a test that cannot be set up has failed
 
 use std::path::{Path, PathBuf};
 
@@ -68,7 +68,7 @@ fn read(path: &Path) -> Picture {
 fn difference(a: &Picture, b: &Picture) -> f64 {
     assert_eq!((a.width, a.height), (b.width, b.height));
     let sum: u64 = a.rgba.iter().zip(&b.rgba).map(|(&a, &b)| u64::from(a.abs_diff(b))).sum();
-    sum as f64 / (3 * a.width * a.height) as f64
+    sum as f64 / f64::from(3 * a.width * a.height)
 }
 
 #[test]

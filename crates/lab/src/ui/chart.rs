@@ -42,10 +42,9 @@ pub(super) fn show(ui: &mut Ui, chart: &Chart, run: u64, look: &Look) -> egui::R
     let hover = |position: &HoverPosition<'_>| hover(chart, position, look.language);
     let font = egui::FontId::proportional(if look.large { 11.5 } else { 10.5 });
     let colours = look.theme.colours();
-    let hints = |axis: &Axis, hints: AxisHints<'static>| {
+    let hints = |axis: &Axis, length: f32, hints: AxisHints<'static>| {
         let logarithmic = axis.scale == Scale::Logarithmic;
-        let room = if std::ptr::eq(axis, &chart.x) { look.width } else { look.height } - 34.0;
-        let name = if look.large { fitted(ui, &axis_name(axis, look.language), room) } else { String::new() };
+        let name = if look.large { fitted(ui, &axis_name(axis, look.language), length - 34.0) } else { String::new() };
         hints
             .label(egui::RichText::new(name).size(NAME))
             .tick_label_font(font.clone())
@@ -60,16 +59,17 @@ pub(super) fn show(ui: &mut Ui, chart: &Chart, run: u64, look: &Look) -> egui::R
     let spacing = |axis: &Axis, length: f32, each: f32| {
         let logarithmic = axis.scale == Scale::Logarithmic;
         let count = f64::from(length / each).max(2.0);
-        move |input: GridInput| if logarithmic { decades(input, count) } else { round_marks(input, count) }
+        move |input: GridInput| if logarithmic { decades(&input, count) } else { round_marks(&input, count) }
     };
     let mut plot = Plot::new(("chart", &chart.name, run, look.large))
         .width(look.width)
         .height(look.height)
         .show_background(false)
         .set_margin_fraction(vec2(0.03, 0.06))
-        .custom_x_axes(vec![hints(&chart.x, AxisHints::new_x())])
+        .custom_x_axes(vec![hints(&chart.x, look.width, AxisHints::new_x())])
         .custom_y_axes(vec![hints(
             &chart.y,
+            look.height,
             AxisHints::new_y().placement(HPlacement::Left).min_thickness(if look.large { 46.0 } else { 38.0 }),
         )])
         .x_grid_spacer(spacing(&chart.x, look.width - 50.0, 46.0))
@@ -269,7 +269,7 @@ fn axis_name(axis: &Axis, language: Language) -> String {
 }
 
 /// Marks at round values, at most about `count` of them.
-fn round_marks(input: GridInput, count: f64) -> Vec<GridMark> {
+fn round_marks(input: &GridInput, count: f64) -> Vec<GridMark> {
     let (least, most) = input.bounds;
     // The largest of 1, 2 and 5 times a power of ten that is not above 2.5 times the ideal step is never below it.
     let step = crate::number::one_two_five_below((2.5 * (most - least) / count).max(f64::MIN_POSITIVE));
@@ -282,7 +282,7 @@ fn round_marks(input: GridInput, count: f64) -> Vec<GridMark> {
 }
 
 /// Marks at powers of ten, every second or third of them where there are many; at 2 and 5 as well where there are few.
-fn decades(input: GridInput, count: f64) -> Vec<GridMark> {
+fn decades(input: &GridInput, count: f64) -> Vec<GridMark> {
     let (least, most) = input.bounds;
     let span = most - least;
     if !span.is_finite() || span > 400.0 {
@@ -366,7 +366,7 @@ mod tests {
 
     #[test]
     fn marks_of_a_logarithmic_axis_are_powers_of_ten() {
-        let texts = |bounds| decades(GridInput { bounds, base_step_size: 0.1 }, 6.0).into_iter().map(decade).collect::<Vec<_>>();
+        let texts = |bounds| decades(&GridInput { bounds, base_step_size: 0.1 }, 6.0).into_iter().map(decade).collect::<Vec<_>>();
         assert_eq!(texts((-2.2, 1.5)), ["0.01", "0.1", "1", "10"]);
         assert_eq!(texts((0.1, 0.9)), ["2", "5"]);
         assert_eq!(texts((-9.5, -3.0)), ["10⁻⁸", "10⁻⁶", "10⁻⁴"]);

@@ -46,6 +46,7 @@ pub(crate) enum Icon {
 }
 
 /// Draws a sign into the middle of a rectangle.
+#[allow(clippy::too_many_lines, reason = "one small picture after the other")]
 pub(crate) fn paint(painter: &Painter, icon: Icon, rect: Rect, colour: Color32) {
     let side = rect.width().min(rect.height());
     let at = |x: f32, y: f32| -> Pos2 { rect.center() + side * egui::vec2(x - 0.5, y - 0.5) };

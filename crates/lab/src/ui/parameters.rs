@@ -80,7 +80,7 @@ fn one(ui: &mut Ui, model: &mut Model, seen: &Snapshot, parameter: &'static Para
         let ink = if refused.is_some() { colours.bad } else { colours.ink };
         let label = ui.label(RichText::new(&name).color(ink)).on_hover_text(&help);
         if !parameter.unit.is_empty() {
-            ui.label(RichText::new(parameter.unit).color(colours.quiet).small());
+            ui.label(RichText::new(language.phrase(parameter.unit)).color(colours.quiet).small());
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             // The place is kept, so that nothing moves when a value is no longer the default.

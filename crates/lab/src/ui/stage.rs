@@ -100,10 +100,9 @@ fn pointer(ui: &Ui, model: &mut Model, seen: &Snapshot, response: &Response, pro
     if response.dragged_by(PointerButton::Primary) {
         let from = projection.place(inside(stage, press));
         match model.tool {
-            Tool::Hand => {}
             Tool::Ruler => model.ruler = Some([from, place]),
             Tool::Probe if !projection.is_spatial() => model.probe = Some([[from[0], from[1]], [place[0], place[1]]]),
-            Tool::Probe => {}
+            Tool::Hand | Tool::Probe => {}
         }
     }
     if response.double_clicked() {
