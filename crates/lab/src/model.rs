@@ -70,6 +70,8 @@ pub enum Overlay {
 pub enum Job {
     /// Write bytes to a file.
     Write(PathBuf, Vec<u8>),
+    /// Write what a part of the window shows to a file, as a picture.
+    Picture(PathBuf, egui::Rect),
     /// Record a film.
     Film(Film),
 }

@@ -1,12 +1,13 @@
 //! The window itself: eframe's events and frames around the model, the panels and the simulation's thread.
 
 use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Duration;
 
 use corpuscle_io::{Refusal, Registry, Scenario, write};
-use corpuscle_render::{RenderError, window::check};
+use corpuscle_render::{Picture, RenderError, window::check};
 use eframe::{App, CreationContext, NativeOptions};
-use egui::{Ui, ViewportBuilder, ViewportCommand};
+use egui::{ColorImage, Rect, Ui, ViewportBuilder, ViewportCommand};
 
 use crate::film::Recording;
 use crate::language::Text;
@@ -126,6 +127,8 @@ struct Lab {
     painter: Painter,
     previews: Option<Previews>,
     recording: Option<Recording>,
+    /// Parts of the window on their way into a file.
+    pictures: (Sender<(PathBuf, ColorImage)>, Receiver<(PathBuf, ColorImage)>),
     place: Option<PathBuf>,
     /// Colours and sizes that the window wears.
     dressed: Option<(theme::Theme, f32)>,
@@ -139,7 +142,7 @@ impl Lab {
         // What the drivers' shaders refuse is to be known before the window shows.
         drop(corpuscle_render::Backdrop::new(gl.clone())?);
         let painter = Painter::new(gl);
-        Ok(Self { model, runner, painter, previews: None, recording: None, place, dressed: None, mourned: false })
+        Ok(Self { model, runner, painter, previews: None, recording: None, pictures: channel(), place, dressed: None, mourned: false })
     }
 
     fn dress(&mut self, context: &egui::Context) {
@@ -159,6 +162,7 @@ impl Lab {
         for job in self.model.take_jobs() {
             match job {
                 Job::Write(path, bytes) => self.write(&path, &bytes),
+                Job::Picture(path, part) => self.ask_for_picture(context, path, part),
                 Job::Film(film) => match Recording::start(&film, &self.model.scenario.to_toml()) {
                     Ok(recording) => {
                         self.model.tell(self.model.language().fill(Text::Recording, &[&film.path]));
@@ -166,6 +170,13 @@ impl Lab {
                     }
                     Err(error) => self.model.complain(self.model.language().fill(Text::RecordFailed, &[&error.to_string()])),
                 },
+            }
+        }
+        while let Ok((path, image)) = self.pictures.1.try_recv() {
+            let [width, height] = image.size.map(|side| side as u32);
+            match (Picture { width, height, rgba: image.as_raw().to_vec() }).to_png() {
+                Ok(bytes) => self.write(&path, &bytes),
+                Err(error) => self.model.complain(error.to_string()),
             }
         }
         if let Some(recording) = &mut self.recording {
@@ -181,6 +192,17 @@ impl Lab {
                 }
             }
         }
+    }
+
+    /// What a part of the window shows comes back with the frame.
+    fn ask_for_picture(&self, context: &egui::Context, path: PathBuf, part: Rect) {
+        let (sender, waker, pixels) = (self.pictures.0.clone(), context.clone(), context.pixels_per_point());
+        let part = part.intersect(context.content_rect());
+        context.request_screenshot(move |image| {
+            // Whoever would have received it has gone with the window.
+            let _ = sender.send((path, image.region(&part, Some(pixels))));
+            waker.request_repaint();
+        });
     }
 
     fn write(&mut self, path: &Path, bytes: &[u8]) {

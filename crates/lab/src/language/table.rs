@@ -116,6 +116,7 @@ table! {
     // Charts and checks.
     Theory: "theory", "理论";
     MakeLarge: "Click to enlarge", "单击放大";
+    SavePicture: "Save as a picture", "保存为图片";
     SaveCsv: "Save as CSV", "保存为 CSV";
     NoCharts: "Nothing has been measured yet.", "尚未测量任何量。";
     NoChecks: "Nothing has been measured yet.", "尚未测量任何量。";

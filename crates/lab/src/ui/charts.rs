@@ -35,7 +35,11 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
     let room = (SHARE * area.height() / rows.max(1) as f32 - GAP).clamp(SMALL.0, SMALL.1);
     let below = (room + GAP) * rows as f32;
     let top = Rect::from_min_max(area.min, pos2(area.right(), area.bottom() - below));
-    ui.scope_builder(UiBuilder::new().max_rect(top), |ui| one(ui, model, large, seen.run, colours.quiet));
+    ui.scope_builder(UiBuilder::new().max_rect(top), |ui| {
+        if one(ui, model, large, seen.run, colours.quiet) {
+            model.ask(Job::Picture(format!("{}-{}.png", model.scenario.name(), large.name).into(), top));
+        }
+    });
     let count = small.len();
     for (index, chart) in small.into_iter().enumerate() {
         let (row, column) = (index / 2, index % 2);
@@ -51,15 +55,18 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
     ui.advance_cursor_after_rect(area);
 }
 
-/// The large chart, with what to look at and what its lines are.
-fn one(ui: &mut Ui, model: &mut Model, chart: &Chart, run: u64, ink: Color32) {
+/// The large chart, with what to look at and what its lines are; whether it is wanted as a picture.
+fn one(ui: &mut Ui, model: &mut Model, chart: &Chart, run: u64, ink: Color32) -> bool {
     let language = model.language();
+    let mut wanted = false;
     ui.horizontal(|ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let tip = model.text(Text::SaveCsv);
             if sized_icon_button(ui, Icon::Save, tip, "", false, vec2(24.0, 22.0)).clicked() {
                 model.ask(Job::Write(format!("{}-{}.csv", model.scenario.name(), chart.name).into(), csv::chart(chart)));
             }
+            let tip = model.text(Text::SavePicture);
+            wanted = sized_icon_button(ui, Icon::Picture, tip, "", false, vec2(24.0, 22.0)).clicked();
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 let title = RichText::new(language.phrase(&chart.title)).font(FontId::new(14.0, bold()));
                 ui.add(egui::Label::new(title).truncate());
@@ -82,6 +89,7 @@ fn one(ui: &mut Ui, model: &mut Model, chart: &Chart, run: u64, ink: Color32) {
     if !note.is_empty() {
         ui.add(egui::Label::new(RichText::new(note).color(ink).small()).wrap());
     }
+    wanted
 }
 
 fn note_height(ui: &Ui, note: &str) -> f32 {

@@ -43,6 +43,8 @@ pub(crate) enum Icon {
     Cross,
     /// An arrow into a tray: open.
     Open,
+    /// A framed view: a picture.
+    Picture,
 }
 
 /// Draws a sign into the middle of a rectangle.
@@ -151,6 +153,11 @@ pub(crate) fn paint(painter: &Painter, icon: Icon, rect: Rect, colour: Color32) 
             path(vec![at(0.5, 0.56), at(0.5, 0.34)]);
             path(vec![at(0.5, 0.56), at(0.66, 0.62)]);
             path(vec![at(0.38, 0.08), at(0.62, 0.08)]);
+        }
+        Icon::Picture => {
+            painter.rect_stroke(Rect::from_min_max(at(0.06, 0.16), at(0.94, 0.84)), 1.5, stroke, egui::StrokeKind::Middle);
+            path(vec![at(0.12, 0.74), at(0.38, 0.46), at(0.54, 0.62), at(0.68, 0.5), at(0.88, 0.72)]);
+            painter.circle_filled(at(0.7, 0.34), 0.08 * side, colour);
         }
         Icon::Cross => {
             path(vec![at(0.22, 0.22), at(0.78, 0.78)]);
