@@ -53,7 +53,6 @@ pub struct Options {
 /// # Errors
 /// [`LabError`] when the scenario cannot be started, there is no display, or no OpenGL: it names what is missing.
 pub fn open(registry: Registry, options: Options) -> Result<(), LabError> {
-    check()?;
     let place = Preferences::place();
     let mut preferences = place.as_deref().map_or_else(Preferences::default, Preferences::read);
     preferences.size = options.size.unwrap_or(preferences.size);
@@ -77,6 +76,8 @@ pub fn open(registry: Registry, options: Options) -> Result<(), LabError> {
     let context = egui::Context::default();
     let waker = context.clone();
     let runner = Runner::start(model.scenario.clone(), move || waker.request_repaint())?;
+    // What cannot be started is refused first, also where there is no display.
+    check()?;
     runner.order(Order::Play(model.overlay == Overlay::None));
 
     let options = NativeOptions {
