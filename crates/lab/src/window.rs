@@ -143,7 +143,17 @@ impl Lab {
         // What the drivers' shaders refuse is to be known before the window shows.
         drop(corpuscle_render::Backdrop::new(gl.clone())?);
         let painter = Painter::new(gl);
-        Ok(Self { model, runner, painter, previews: None, recording: None, pictures: channel(), place, dressed: None, mourned: false })
+        Ok(Self {
+            model,
+            runner,
+            painter,
+            previews: None,
+            recording: None,
+            pictures: channel(),
+            place,
+            dressed: None,
+            mourned: false,
+        })
     }
 
     fn dress(&mut self, context: &egui::Context) {
