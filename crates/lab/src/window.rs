@@ -121,6 +121,9 @@ fn explain(error: eframe::Error) -> RenderError {
     }
 }
 
+/// A part of the window, and the file it is for.
+type Cutting = (PathBuf, ColorImage);
+
 /// The running window.
 struct Lab {
     model: Model,
@@ -129,7 +132,7 @@ struct Lab {
     previews: Option<Previews>,
     recording: Option<Recording>,
     /// Parts of the window on their way into a file.
-    pictures: (Sender<(PathBuf, ColorImage)>, Receiver<(PathBuf, ColorImage)>),
+    pictures: (Sender<Cutting>, Receiver<Cutting>),
     place: Option<PathBuf>,
     /// Colours and sizes that the window wears.
     dressed: Option<(theme::Theme, f32)>,
