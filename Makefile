@@ -1,8 +1,8 @@
 # Two commands do everything on a fresh Debian or Ubuntu machine that has Rust:
-#   make run    install what is missing, build, run the five experiments
+#   make run    install what is missing, build, open the laboratory; without a display run the five experiments
 #   make test   the same, then every test
 .DEFAULT_GOAL := help
-.PHONY: help run test soak kill fuzz lint bench setup setup-test clean
+.PHONY: help run reports test soak kill fuzz lint bench setup setup-test clean
 
 CARGO ?= cargo
 OUT   ?= results
@@ -10,7 +10,12 @@ OUT   ?= results
 help: ## Show what there is to make
 	@awk -F':.*## ' '/^[a-z-]+:.*## /{printf "  make %-8s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
 
-run: setup ## Build, run the five experiments, leave a report of each under results/
+run: setup ## Build and open the laboratory; without a display, make the reports
+	$(CARGO) build --release --locked
+	@if [ -n "$$DISPLAY$$WAYLAND_DISPLAY" ] || [ "$$(uname -s)" = Darwin ]; then target/release/corpuscle; \
+	else scripts/run-all.sh target/release/corpuscle $(OUT); fi
+
+reports: setup ## Run the five experiments, leave a report of each under results/
 	$(CARGO) build --release --locked
 	@scripts/run-all.sh target/release/corpuscle $(OUT)
 

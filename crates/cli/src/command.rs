@@ -2,6 +2,7 @@
 
 pub(crate) mod bench;
 pub(crate) mod check;
+pub(crate) mod lab;
 pub(crate) mod list;
 pub(crate) mod record;
 pub(crate) mod resume;

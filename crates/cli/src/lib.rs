@@ -23,7 +23,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use corpuscle_io::Registry;
 
-use command::{bench, check, list, record, resume, run, schema, view};
+use command::{bench, check, lab, list, record, resume, run, schema, view};
 use trouble::Trouble;
 
 /// A physics laboratory: exact hard-particle dynamics, soft particles, gravity and waves, measured beside theory.
@@ -42,7 +42,9 @@ enum Task {
     Run(run::Arguments),
     /// Go on with a run that was interrupted, from its newest checkpoint, to the same end to the last bit.
     Resume(resume::Arguments),
-    /// Watch an experiment or a scenario file in a window, or save what the window would show.
+    /// Open the laboratory: a window with charts, parameters and a notebook. The same as `corpuscle` alone.
+    Lab(lab::Arguments),
+    /// Watch an experiment or a scenario file in the laboratory's window, or save what the window would show.
     View(view::Arguments),
     /// Record a clip: .mp4, .gif, or a folder of pictures. Needs no display.
     Record(record::Arguments),
@@ -83,10 +85,8 @@ pub fn main(registry: Registry<'_>) -> ExitCode {
 impl Command {
     fn obey(&self, registry: Registry) -> Result<ExitCode, Trouble> {
         match &self.task {
-            None => {
-                console::print(&usage::welcome(registry))?;
-                Ok(ExitCode::SUCCESS)
-            }
+            None => lab::welcome(registry),
+            Some(Task::Lab(arguments)) => lab::lab(arguments, registry),
             Some(Task::List(arguments)) => list::list(arguments, registry),
             Some(Task::Run(arguments)) => run::run(arguments, registry),
             Some(Task::Resume(arguments)) => resume::resume(arguments, registry),

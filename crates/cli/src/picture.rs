@@ -3,7 +3,10 @@
 use std::str::FromStr;
 
 use corpuscle_experiments::Simulation;
-use corpuscle_io::Picture;
+use corpuscle_io::{Picture, Registry, Scenario};
+use corpuscle_lab::language::Language;
+use corpuscle_lab::theme::Theme;
+use corpuscle_lab::{Preferences, Studio, StudioView};
 use corpuscle_render::{Headless, RenderError, View};
 use corpuscle_scene::{Palette, Scene};
 
@@ -30,16 +33,78 @@ pub(crate) enum PaletteName {
     /// For screens.
     #[default]
     Dark,
-    /// For print and projectors.
+    /// For bright rooms and print.
     Light,
+    /// For projectors: black on white, larger.
+    Projector,
 }
 
 impl From<PaletteName> for Palette {
     fn from(name: PaletteName) -> Self {
         match name {
             PaletteName::Dark => Self::Dark,
-            PaletteName::Light => Self::Light,
+            PaletteName::Light | PaletteName::Projector => Self::Light,
         }
+    }
+}
+
+impl From<PaletteName> for Theme {
+    fn from(name: PaletteName) -> Self {
+        match name {
+            PaletteName::Dark => Self::Dark,
+            PaletteName::Light => Self::Light,
+            PaletteName::Projector => Self::Projector,
+        }
+    }
+}
+
+/// The languages of the window, by name.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub(crate) enum LanguageName {
+    /// English.
+    English,
+    /// Simplified Chinese.
+    Chinese,
+}
+
+impl From<LanguageName> for Language {
+    fn from(name: LanguageName) -> Self {
+        match name {
+            LanguageName::English => Self::English,
+            LanguageName::Chinese => Self::Chinese,
+        }
+    }
+}
+
+/// A window as nobody has changed it: not even the person whose machine it is, so that a picture is the same everywhere.
+pub(crate) fn studio(
+    registry: Registry,
+    scenario: Scenario,
+    size: Size,
+    theme: Theme,
+    language: Language,
+) -> Result<Studio, RenderError> {
+    let preferences = Preferences { language, theme, hints_seen: u8::MAX, ..Preferences::default() };
+    let view = StudioView { size: [size.width, size.height], scale: 1.0, preferences, ..StudioView::default() };
+    Studio::new(registry, scenario, view)
+}
+
+/// Who draws a simulation without a screen: the stage alone, or the whole window.
+pub(crate) trait Draws {
+    /// Looks without drawing, so that trails have a point for this moment; false when looking is of no use.
+    fn look(&mut self, simulation: &dyn Simulation) -> bool;
+
+    /// The pixels of what there is to see now.
+    fn draw(&mut self, simulation: &dyn Simulation) -> Result<corpuscle_render::Picture, RenderError>;
+}
+
+impl Draws for Studio {
+    fn look(&mut self, simulation: &dyn Simulation) -> bool {
+        Self::look(self, simulation)
+    }
+
+    fn draw(&mut self, simulation: &dyn Simulation) -> Result<corpuscle_render::Picture, RenderError> {
+        self.picture(simulation, true)
     }
 }
 
@@ -64,23 +129,22 @@ impl Artist {
         self
     }
 
-    /// Looks at the simulation without drawing, so that trails have a point for this moment. False when there are none,
-    /// and looking is therefore of no use.
-    pub(crate) fn look(&mut self, simulation: &dyn Simulation) -> bool {
-        simulation.draw(&mut self.scene);
-        !self.scene.trails.is_empty()
-    }
-
-    /// The pixels of what there is to see now.
-    pub(crate) fn draw(&mut self, simulation: &dyn Simulation) -> Result<corpuscle_render::Picture, RenderError> {
-        self.look(simulation);
-        self.headless.picture(&self.scene, &self.view)
-    }
-
     /// A picture of what there is to see now, for the report.
     pub(crate) fn picture(&mut self, simulation: &dyn Simulation) -> Result<Picture, RenderError> {
         let png = self.draw(simulation)?.to_png()?;
         Ok(Picture { time: simulation.time(), caption: self.scene.caption.clone(), png })
+    }
+}
+
+impl Draws for Artist {
+    fn look(&mut self, simulation: &dyn Simulation) -> bool {
+        simulation.draw(&mut self.scene);
+        !self.scene.trails.is_empty()
+    }
+
+    fn draw(&mut self, simulation: &dyn Simulation) -> Result<corpuscle_render::Picture, RenderError> {
+        self.look(simulation);
+        self.headless.picture(&self.scene, &self.view)
     }
 }
 

@@ -13,7 +13,7 @@ use corpuscle_scene::Palette;
 
 use crate::console;
 use crate::keeper::Keeper;
-use crate::picture::{Artist, Size};
+use crate::picture::{Artist, Draws, Size};
 use crate::progress::Progress;
 use crate::signal::Stop;
 use crate::trouble::Trouble;

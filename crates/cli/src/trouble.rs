@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use corpuscle_core::Failure;
 use corpuscle_io::number::significant;
 use corpuscle_io::{Refusal, WriteError};
+use corpuscle_lab::LabError;
 use corpuscle_render::RenderError;
 
 /// What keeps a command from doing its work.
@@ -76,5 +77,14 @@ fn remedy(error: &RenderError) -> &'static str {
     match error {
         RenderError::Context(_) if cfg!(target_os = "linux") => ": install libegl1 and libgl1-mesa-dri (Debian/Ubuntu)",
         _ => "",
+    }
+}
+
+impl From<LabError> for Trouble {
+    fn from(error: LabError) -> Self {
+        match error {
+            LabError::Refused(refusal) => refusal.into(),
+            LabError::Render(error) => error.into(),
+        }
     }
 }

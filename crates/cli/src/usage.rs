@@ -10,13 +10,13 @@ use corpuscle_io::{Origin, Refusal, Registry};
 
 use crate::trouble::Trouble;
 
-/// What to type first.
-pub(crate) fn welcome(registry: Registry) -> String {
+/// What to type first where there is no display for the window: `cause` says why.
+pub(crate) fn welcome(registry: Registry, cause: &str) -> String {
     let names: Vec<&str> = registry.iter().map(|experiment| experiment.name).collect();
     let name = |place: usize| names.get(place % names.len().max(1)).copied().unwrap_or("FILE.toml");
     let examples = [
         ("list".into(), "the experiments there are"),
-        (format!("view {}", name(3)), "watch one in a window; h shows the keys"),
+        (format!("view {} --screenshot a.png --at 5", name(3)), "a picture of the window, without a display"),
         (format!("run {}", name(0)), "run one, check it against theory, write its report"),
         (format!("record {} --out {}.mp4", name(4), name(4)), "make a film of one; needs no display"),
         (format!("check {}", name(1)), "its parameters and what they accept; runs nothing"),
@@ -27,7 +27,8 @@ pub(crate) fn welcome(registry: Registry) -> String {
         // Writing into a string cannot fail.
         let _ = writeln!(out, "  corpuscle {example:<width$}  {meaning}");
     }
-    let _ = writeln!(out, "\nExperiments: {}. A scenario file does as well.", names.join(", "));
+    let _ = writeln!(out, "\nNo display ({cause}), so no window. On a desktop, `corpuscle` alone opens it.");
+    let _ = writeln!(out, "Experiments: {}. A scenario file does as well.", names.join(", "));
     out + "All options: corpuscle --help, corpuscle run --help\n"
 }
 

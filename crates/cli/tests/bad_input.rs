@@ -11,6 +11,13 @@ fn corpuscle(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_corpuscle")).args(arguments).current_dir(folder).output().expect("the command starts")
 }
 
+/// The command alone, where there is no display.
+fn without_display(folder: &Path) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_corpuscle"));
+    command.current_dir(folder).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
+    command.output().expect("the command starts")
+}
+
 /// Runs with these arguments, after writing `file` as scenario.toml, and asserts refusal: exit code 2, one line on standard
 /// error with every one of `parts`, nothing on standard output, nothing written.
 fn refused(file: Option<&[u8]>, arguments: &[&str], parts: &[&str]) {
@@ -155,11 +162,12 @@ fn commands_there_are_not() {
 #[test]
 fn a_newcomer_is_told_where_to_start() {
     let folder = tempfile::tempdir().unwrap();
-    let output = corpuscle(folder.path(), &[]);
+    let output = without_display(folder.path());
     let text = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(0));
     assert!(output.stderr.is_empty());
     assert!(text.lines().count() < 15, "short: {text}");
+    assert!(text.contains("No display") && text.contains("DISPLAY"), "it says why there is no window: {text}");
     for part in ["corpuscle list", "corpuscle view", "corpuscle run", "corpuscle record", "--help", "brownian", "wave"] {
         assert!(text.contains(part), "{text}");
     }

@@ -95,7 +95,7 @@ fn every_experiment_has_a_picture_of_the_size_asked_for() {
     let folder = tempfile::tempdir().unwrap();
     for name in ["brownian", "entropy", "ideal-gas", "three-body", "wave"] {
         let file = format!("{name}.png");
-        let arguments = ["view", name, "--screenshot", &file, "--at", "2s", "--size", "640x400"];
+        let arguments = ["view", name, "--no-panels", "--screenshot", &file, "--at", "2s", "--size", "640x400"];
         succeeded(&corpuscle(folder.path(), &arguments));
         let path = folder.path().join(&file);
         let (width, height, colours) = look(&path);
@@ -109,24 +109,62 @@ fn every_experiment_has_a_picture_of_the_size_asked_for() {
     assert_eq!(names(folder.path()).len(), 5);
 }
 
+/// The laboratory's whole window: the same bytes for the same moment, another picture in another language and palette.
+#[test]
+fn the_whole_window_has_its_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let take = |file: &str, more: &[&str]| {
+        let arguments = ["view", "wave", "--screenshot", file, "--at", "2.5s", "--size", "1600x1000"];
+        succeeded(&corpuscle(folder.path(), &[&arguments[..], more].concat()));
+        let path = folder.path().join(file);
+        let (width, height, colours) = look(&path);
+        assert_eq!((width, height), (1600, 1000));
+        assert!(colours > 200, "{file}: only {colours} colours");
+        fs::read(path).unwrap()
+    };
+    let first = take("a.png", &[]);
+    assert!(take("b.png", &[]) == first, "another picture of the same moment");
+    assert!(take("c.png", &["--palette", "light"]) != first);
+    assert!(take("d.png", &["--language", "chinese"]) != first);
+    assert!(take("e.png", &["--no-panels"]) != first);
+}
+
+#[test]
+fn a_film_of_the_whole_window_has_its_pictures() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments =
+        ["record", "wave", "--panels", "--size", "1280x720", "--fps", "1", "--speed", "5", "--to", "10s", "--out", "film"];
+    succeeded(&corpuscle(folder.path(), &arguments));
+    let pictures = names(&folder.path().join("film"));
+    assert_eq!(pictures, ["00000.png", "00001.png", "00002.png"]);
+    for name in &pictures {
+        let (width, height, colours) = look(&folder.path().join("film").join(name));
+        assert_eq!((width, height), (1280, 720));
+        assert!(colours > 200, "{name}: only {colours} colours");
+    }
+}
+
 #[test]
 fn without_a_display_a_window_is_refused_and_pictures_are_offered() {
     let folder = tempfile::tempdir().unwrap();
     if !cfg!(target_os = "linux") {
         return; // elsewhere there is always a display
     }
-    let output = corpuscle(folder.path(), &["view", "wave"]);
-    let complaint = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(1), "{complaint}");
-    assert_eq!(complaint.lines().count(), 1, "{complaint}");
-    for part in ["no display", "DISPLAY", "--screenshot", "record"] {
-        assert!(complaint.contains(part), "{complaint}");
+    for arguments in [&["view", "wave"][..], &["view", "wave", "--no-panels"], &["lab"], &["lab", "wave"]] {
+        let output = corpuscle(folder.path(), arguments);
+        let complaint = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{complaint}");
+        assert_eq!(complaint.lines().count(), 1, "{complaint}");
+        for part in ["no display", "DISPLAY", "--screenshot", "record"] {
+            assert!(complaint.contains(part), "{complaint}");
+        }
+        assert!(output.stdout.is_empty());
+        // A display that is named but not there.
+        let output = command(folder.path(), arguments).env("DISPLAY", ":4711").output().unwrap();
+        let complaint = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{complaint}");
+        assert!(complaint.contains("no display") && !complaint.contains("panicked"), "{complaint}");
     }
-    assert!(output.stdout.is_empty());
-    let output = command(folder.path(), &["view", "wave"]).env("DISPLAY", ":4711").output().unwrap();
-    let complaint = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(1), "{complaint}");
-    assert!(complaint.contains("no display") && !complaint.contains("panicked"), "{complaint}");
 }
 
 /// The libraries are there, and no driver behind them.

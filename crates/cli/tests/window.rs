@@ -16,7 +16,7 @@ struct Viewer(Option<Child>);
 impl Viewer {
     fn open(display: &Display, arguments: &[&str]) -> Self {
         let mut command = display.command(env!("CARGO_BIN_EXE_corpuscle"));
-        let child = command.args(["view", "--size", "720x480"]).args(arguments).stdout(Stdio::null()).spawn();
+        let child = command.args(["view", "--no-panels", "--size", "720x480"]).args(arguments).stdout(Stdio::null()).spawn();
         let viewer = Self(Some(child.unwrap()));
         display.focus("Corpuscle");
         viewer
@@ -109,15 +109,20 @@ fn escape_leaves_while_it_runs() {
 #[test]
 fn a_display_without_opengl_is_explained() {
     let display = Display::start();
-    let mut command = display.command(env!("CARGO_BIN_EXE_corpuscle"));
-    let output = command
-        .args(["view", "wave"])
-        .env("__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent")
-        .env("__GLX_VENDOR_LIBRARY_NAME", "nonexistent")
-        .env("LIBGL_DRIVERS_PATH", "/nonexistent")
-        .output()
-        .unwrap();
-    let complaint = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(1), "{complaint}");
-    assert!(complaint.contains("OpenGL") && !complaint.contains("panicked"), "{complaint}");
+    for arguments in [&["view", "wave", "--no-panels"][..], &["lab", "wave"], &["view", "wave"]] {
+        let mut command = display.command(env!("CARGO_BIN_EXE_corpuscle"));
+        let output = command
+            .args(arguments)
+            .env("__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent")
+            .env("__GLX_VENDOR_LIBRARY_NAME", "nonexistent")
+            .env("LIBGL_DRIVERS_PATH", "/nonexistent")
+            .output()
+            .unwrap();
+        let complaint = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{complaint}");
+        assert!(
+            complaint.contains("OpenGL") && complaint.contains("install lib") && !complaint.contains("panicked"),
+            "{complaint}"
+        );
+    }
 }

@@ -10,6 +10,7 @@ pub mod free;
 mod gas;
 mod horizon;
 pub mod parameter;
+mod peek;
 pub mod simulation;
 
 pub use parameter::{Kind, Parameter, Settings, Value};

@@ -55,6 +55,12 @@ pub trait Simulation: Send {
         None
     }
 
+    /// Physical time of the next collision of what is on show; none where nothing collides, or not before [`end`](Self::end)
+    /// and half as long again.
+    fn next_event(&self) -> Option<f64> {
+        None
+    }
+
     /// Does something to the system now.
     ///
     /// # Errors

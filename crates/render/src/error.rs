@@ -60,3 +60,10 @@ pub enum RenderError {
         source: std::io::Error,
     },
 }
+
+impl RenderError {
+    /// There is no driver for OpenGL.
+    pub fn no_driver() -> Self {
+        Self::Missing { what: "an OpenGL driver".into(), package: "libegl1 and libgl1-mesa-dri (Debian/Ubuntu)" }
+    }
+}

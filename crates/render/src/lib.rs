@@ -6,6 +6,7 @@
 //!
 //! One GLSL source serves OpenGL 3.3 and OpenGL ES 3.0. Bodies are moved to the scene's time in the vertex shader.
 
+mod backdrop;
 mod canvas;
 mod clip;
 mod error;
@@ -18,14 +19,17 @@ mod picture;
 mod platform;
 mod projection;
 mod renderer;
+mod surface;
 mod view;
 #[cfg(feature = "window")]
 pub mod window;
 
+pub use backdrop::Backdrop;
 pub use clip::Clip;
 pub use error::RenderError;
 pub use headless::{Headless, ShadingLanguage};
 pub use picture::Picture;
 pub use projection::{Projection, Rectangle};
 pub use renderer::Renderer;
+pub use surface::Surface;
 pub use view::View;

@@ -7,12 +7,13 @@ use clap::Args;
 use corpuscle_experiments::Simulation;
 use corpuscle_io::number::significant;
 use corpuscle_io::{Refusal, Registry, Scenario};
+use corpuscle_lab::language::Language;
 use corpuscle_render::{Clip, RenderError};
 
 use super::target::{extension, refuse, vacant};
 use super::{Subject, physical_time, positive};
 use crate::console;
-use crate::picture::{Artist, PaletteName, Size};
+use crate::picture::{Artist, Draws, PaletteName, Size, studio};
 use crate::progress::Progress;
 use crate::signal::Stop;
 use crate::trouble::Trouble;
@@ -54,6 +55,9 @@ pub(crate) struct Arguments {
     /// Ground and ink.
     #[arg(long, value_enum, default_value_t)]
     palette: PaletteName,
+    /// The whole window, with its panels.
+    #[arg(long)]
+    panels: bool,
 }
 
 pub(crate) fn record(arguments: &Arguments, registry: Registry) -> Result<ExitCode, Trouble> {
@@ -62,7 +66,12 @@ pub(crate) fn record(arguments: &Arguments, registry: Registry) -> Result<ExitCo
     let mut simulation = scenario.start()?;
     let plan = Plan::new(arguments, &scenario, simulation.as_ref())?;
     let Size { width, height } = arguments.size;
-    let mut artist = Artist::new(arguments.size, arguments.palette.into())?;
+    let palette = arguments.palette;
+    let mut artist: Box<dyn Draws> = if arguments.panels {
+        Box::new(studio(registry, scenario.clone(), arguments.size, palette.into(), Language::English)?)
+    } else {
+        Box::new(Artist::new(arguments.size, palette.into())?)
+    };
     let mut clip = Clip::create(&arguments.out, width, height, arguments.fps).map_err(|error| arguments.named(error))?;
     console::print(&format!(
         "{} ({}), seed {}: {} pictures from t = {} to {}\n",

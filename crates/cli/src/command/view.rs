@@ -8,13 +8,15 @@ use std::process::ExitCode;
 
 use clap::Args;
 use corpuscle_experiments::Simulation;
-use corpuscle_io::{Registry, write};
+use corpuscle_io::{Registry, Scenario, write};
+use corpuscle_lab::language::Language;
 use corpuscle_render::window::Options;
 
+use super::lab::{self, Look};
 use super::target::{extension, refuse, vacant};
 use super::{Subject, physical_time};
 use crate::console;
-use crate::picture::{Artist, PaletteName, Size};
+use crate::picture::{Artist, Draws, PaletteName, Size, studio};
 use crate::progress::Progress;
 use crate::signal::Stop;
 use crate::trouble::Trouble;
@@ -38,9 +40,11 @@ pub(crate) struct Arguments {
     /// Width and height in pixels.
     #[arg(long, default_value = "1280x800", allow_hyphen_values = true)]
     size: Size,
-    /// Ground and ink.
-    #[arg(long, value_enum, default_value_t)]
-    palette: PaletteName,
+    #[command(flatten)]
+    look: Look,
+    /// The picture alone, in a plain window.
+    #[arg(long)]
+    no_panels: bool,
 }
 
 pub(crate) fn view(arguments: &Arguments, registry: Registry) -> Result<ExitCode, Trouble> {
@@ -51,28 +55,66 @@ pub(crate) fn view(arguments: &Arguments, registry: Registry) -> Result<ExitCode
             return Err(refuse("screenshot", path.display(), "the name of a file that ends in .png").into());
         }
         vacant("screenshot", path, arguments.force)?;
-        screenshot(arguments, scenario.start()?.as_mut(), path)?;
+        let mut simulation = scenario.start()?;
+        if arguments.no_panels {
+            screenshot(arguments, simulation.as_mut(), path)?;
+        } else {
+            window_screenshot(arguments, registry, scenario, simulation.as_mut(), path)?;
+        }
         console::print(&format!("{name}, seed {seed}: {}\n", path.display()))?;
+    } else if !arguments.no_panels {
+        return lab::open(registry, Some(scenario), Some(arguments.size), arguments.look);
     } else {
         let Size { width, height } = arguments.size;
         let title = format!("{} · Corpuscle", scenario.title());
-        window::open(registry, scenario, Options { title, width, height, palette: arguments.palette.into() })?;
+        window::open(registry, scenario, Options { title, width, height, palette: arguments.palette().into() })?;
     }
     Ok(ExitCode::SUCCESS)
 }
 
+impl Arguments {
+    fn palette(&self) -> PaletteName {
+        self.look.palette.unwrap_or_default()
+    }
+}
+
+/// The stage alone.
 fn screenshot(arguments: &Arguments, simulation: &mut dyn Simulation, path: &Path) -> Result<(), Trouble> {
-    let mut artist = Artist::new(arguments.size, arguments.palette.into())?;
+    let mut artist = Artist::new(arguments.size, arguments.palette().into())?;
+    approach(arguments.at, simulation, |simulation| {
+        artist.look(simulation);
+    })?;
+    Ok(write::atomically(path, &artist.picture(simulation)?.png)?)
+}
+
+/// The whole window.
+fn window_screenshot(
+    arguments: &Arguments,
+    registry: Registry,
+    scenario: Scenario,
+    simulation: &mut dyn Simulation,
+    path: &Path,
+) -> Result<(), Trouble> {
+    let language = arguments.look.language.map_or(Language::English, Into::into);
+    let mut studio = studio(registry, scenario, arguments.size, arguments.palette().into(), language)?;
+    approach(arguments.at, simulation, |simulation| {
+        studio.look(simulation);
+    })?;
+    Ok(write::atomically(path, &studio.picture(simulation, false)?.to_png()?)?)
+}
+
+/// Advances to a time with looks on the way, for the trails.
+fn approach(at: f64, simulation: &mut dyn Simulation, mut look: impl FnMut(&dyn Simulation)) -> Result<(), Trouble> {
     let start = simulation.time();
-    let to = arguments.at.max(start);
+    let to = at.max(start);
     let mut progress = Progress::new(simulation, to, false, Stop::listen());
-    for look in 1..=LOOKS {
-        let part = if look == LOOKS { to } else { start + (to - start) * f64::from(look) / f64::from(LOOKS) };
+    for step in 1..=LOOKS {
+        let part = if step == LOOKS { to } else { start + (to - start) * f64::from(step) / f64::from(LOOKS) };
         if !progress.advance(simulation, part)? {
             return Err(Trouble::Interrupted("stopped before the picture; nothing was written".into()));
         }
-        artist.look(simulation);
+        look(simulation);
     }
     progress.finish();
-    Ok(write::atomically(path, &artist.picture(simulation)?.png)?)
+    Ok(())
 }

@@ -39,12 +39,19 @@ impl Pixels {
 
 impl Display {
     /// Starts a server on whatever display is free.
+    #[allow(dead_code, reason = "each test that shares this file uses its own part of it")]
     pub(crate) fn start() -> Self {
+        Self::of_size("720x480")
+    }
+
+    /// The same with a screen of so many pixels, written `720x480`.
+    pub(crate) fn of_size(size: &str) -> Self {
+        let screen = format!("{size}x24");
         let folder = tempfile::tempdir().unwrap();
         // `-displayfd 1`: the server chooses the number and prints it when it is ready. `-noreset`: or it would start again
         // whenever the last client leaves, and take those with it that are just arriving.
         let server = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-screen", "0", "720x480x24", "-nolisten", "tcp", "-noreset", "-fbdir"])
+            .args(["-displayfd", "1", "-screen", "0", &screen, "-nolisten", "tcp", "-noreset", "-fbdir"])
             .arg(folder.path())
             .stdout(Stdio::piped())
             .stderr(Stdio::null())

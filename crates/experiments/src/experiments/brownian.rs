@@ -19,7 +19,7 @@ use corpuscle_observe::{Chart, Check, Curves, Estimate, Schedule, msd, theory, v
 use corpuscle_scene::{Colour, Colouring, Scene, TrailPoint};
 
 use crate::horizon::precision_horizon;
-use crate::{Action, Experiment, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, gas};
+use crate::{Action, Experiment, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, gas, peek};
 use bath::{Bath, TRACER};
 
 /// The registry's entry.
@@ -412,6 +412,11 @@ impl<const D: usize> Simulation for Brownian<D> {
 
     fn moments(&self) -> Vec<f64> {
         vec![0.0, 2.0 * self.set.relaxation(), 10.0 * self.set.relaxation()]
+    }
+
+    fn next_event(&self) -> Option<f64> {
+        let bath = &self.baths[0];
+        peek::next_contact(&bath.engine, 1.5 * self.duration).map(|time| time - bath.started())
     }
 
     fn act(&mut self, action: Action) -> Result<(), Invalid> {

@@ -20,7 +20,7 @@ use corpuscle_observe::{Chart, Check, Estimate, Schedule, theory};
 use corpuscle_scene::{Colour, Colouring, Label, Region, Scene};
 
 use crate::horizon::precision_horizon;
-use crate::{Action, Experiment, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, gas};
+use crate::{Action, Experiment, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, gas, peek};
 use room::{Process, Room, Sample};
 
 /// The registry's entry.
@@ -454,6 +454,10 @@ impl<const D: usize> Simulation for Entropy<D> {
             precision_horizon: precision_horizon(&self.shown.engine),
             ..Honesty::default()
         }
+    }
+
+    fn next_event(&self) -> Option<f64> {
+        peek::next_contact(&self.shown.engine, 1.5 * self.duration).map(|time| time - self.shown.opened())
     }
 
     fn moments(&self) -> Vec<f64> {

@@ -17,7 +17,7 @@ use corpuscle_scene::{Colouring, Scene};
 use crate::drawing::add_event_driven;
 use crate::horizon::precision_horizon;
 use crate::simulation::{Honesty, Simulation, Table};
-use crate::{Experiment, Kind, Parameter, Settings, ensemble, gas};
+use crate::{Experiment, Kind, Parameter, Settings, ensemble, gas, peek};
 use system::{Pace, State, System};
 
 /// Samples a crossing of the box, `a / sqrt(kT/m)`.
@@ -336,6 +336,10 @@ impl<const D: usize> Simulation for Laboratory<D> {
             precision_horizon: precision_horizon(&self.base.replicas[0].engine),
             ..Honesty::default()
         }
+    }
+
+    fn next_event(&self) -> Option<f64> {
+        peek::next_contact(&self.base.replicas[0].engine, 1.5 * self.end())
     }
 
     fn moments(&self) -> Vec<f64> {

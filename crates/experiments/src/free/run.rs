@@ -12,7 +12,7 @@ use super::build::{AnyEngine, Built, build};
 use super::spec::{Observable, System};
 use super::verdict::Conserved;
 use crate::horizon::precision_horizon;
-use crate::{Action, Honesty, Simulation, Table, drawing};
+use crate::{Action, Honesty, Simulation, Table, drawing, peek};
 
 /// Samples taken when the file does not say how often.
 const SAMPLES: f64 = 500.0;
@@ -440,6 +440,13 @@ impl<const D: usize> Simulation for Free<D> {
 
     fn moments(&self) -> Vec<f64> {
         vec![0.0, 0.5 * self.duration]
+    }
+
+    fn next_event(&self) -> Option<f64> {
+        match &self.engine {
+            AnyEngine::Event(engine) => peek::next_contact(engine, 1.5 * self.end()),
+            AnyEngine::Time(_) => None,
+        }
     }
 
     fn act(&mut self, action: Action) -> Result<(), Invalid> {

@@ -80,6 +80,12 @@ impl Framebuffer {
         unsafe { self.gl.bind_framebuffer(glow::FRAMEBUFFER, None) };
     }
 
+    /// Copies the picture to a texture of its size; no frame buffer is bound afterwards.
+    pub(crate) fn show_on(&self, screen: &super::Screen) {
+        self.copy(self.resolve(), Some(screen.framebuffer()));
+        unsafe { self.gl.bind_framebuffer(glow::FRAMEBUFFER, None) };
+    }
+
     fn resolve(&self) -> glow::Framebuffer {
         let Some(resolved) = &self.resolved else { return self.drawn.framebuffer };
         self.copy(self.drawn.framebuffer, Some(resolved.framebuffer));

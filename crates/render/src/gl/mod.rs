@@ -9,12 +9,14 @@ mod buffer;
 mod framebuffer;
 mod pass;
 mod program;
+mod screen;
 mod texture;
 
 pub(crate) use buffer::{Strip, Vertex, VertexBuffer};
 pub(crate) use framebuffer::Framebuffer;
 pub(crate) use pass::{Pass, Viewport, begin_frame, end_frame, largest_side};
 pub(crate) use program::Program;
+pub(crate) use screen::Screen;
 pub(crate) use texture::{Format, Texture};
 
 /// The functions of one OpenGL context.

@@ -111,7 +111,7 @@ fn refused(fault: &dyn std::fmt::Display) -> RenderError {
 }
 
 fn explain_missing() -> RenderError {
-    RenderError::Missing { what: "an OpenGL driver".into(), package: "libegl1 and libgl1-mesa-dri (Debian/Ubuntu)" }
+    RenderError::no_driver()
 }
 
 fn explain(fault: &glutin::error::Error) -> RenderError {

@@ -52,13 +52,21 @@ pub trait WindowApp {
 /// Time between two pictures where the screen does not set the pace.
 const INTERVAL: Duration = Duration::from_micros(16_667);
 
+/// Whether there is a display, and whether the libraries are there that windows are made with: toolkits panic over some.
+///
+/// # Errors
+/// [`RenderError::NoDisplay`] where there is no screen; [`RenderError::Missing`] names a library to install.
+pub fn check() -> Result<(), RenderError> {
+    platform::display::check_libraries()
+}
+
 /// Opens a window and returns when it is closed.
 ///
 /// # Errors
 /// [`RenderError::NoDisplay`] where there is no screen; [`RenderError::Missing`] names a library to install;
 /// [`RenderError::Context`] when there is no OpenGL; and whatever drawing meets.
 pub fn view(options: Options, app: impl WindowApp) -> Result<(), RenderError> {
-    platform::display::check_libraries()?;
+    check()?;
     let events = EventLoop::new().map_err(|fault| RenderError::NoDisplay { cause: fault.to_string() })?;
     let palette = options.palette;
     let mut viewer = Viewer {

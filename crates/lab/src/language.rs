@@ -1,0 +1,135 @@
+//! The window's words, in every language it speaks, from one table.
+//!
+//! Words of the window itself are [`Text`]s: the compiler holds that each has every language. What experiments say of
+//! themselves (titles, helps, names of parameters) comes in English and is looked up in [`phrases`]; what is not found there
+//! stays English.
+
+pub mod phrases;
+mod table;
+
+use serde::{Deserialize, Serialize};
+
+pub use table::Text;
+
+/// A language of the window.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Language {
+    /// English.
+    #[default]
+    English,
+    /// Simplified Chinese.
+    Chinese,
+}
+
+impl Language {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::English, Self::Chinese];
+
+    /// Its own name for itself.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::English => "English",
+            Self::Chinese => "简体中文",
+        }
+    }
+
+    /// The next one round.
+    #[must_use]
+    pub fn next(self) -> Self {
+        match self {
+            Self::English => Self::Chinese,
+            Self::Chinese => Self::English,
+        }
+    }
+
+    /// The language that the system's environment asks for: Chinese for `zh...`, English otherwise.
+    pub fn of_the_system() -> Self {
+        let asked = ["LC_ALL", "LC_MESSAGES", "LANG"].iter().find_map(|name| std::env::var(name).ok().filter(|v| !v.is_empty()));
+        if asked.is_some_and(|locale| locale.starts_with("zh")) { Self::Chinese } else { Self::English }
+    }
+
+    /// A word of the window.
+    pub fn text(self, text: Text) -> &'static str {
+        text.entry()[match self {
+            Self::English => 0,
+            Self::Chinese => 1,
+        }]
+    }
+
+    /// A sentence of the window with its gaps, written `{}`, filled in order.
+    pub fn fill(self, text: Text, parts: &[&str]) -> String {
+        let mut parts = parts.iter();
+        let mut filled = String::new();
+        for (index, piece) in self.text(text).split("{}").enumerate() {
+            if index > 0 {
+                filled += parts.next().copied().unwrap_or_default();
+            }
+            filled += piece;
+        }
+        filled
+    }
+
+    /// What an experiment says of itself.
+    pub fn phrase(self, english: &str) -> &str {
+        match self {
+            Self::English => english,
+            Self::Chinese => phrases::chinese(english).unwrap_or(english),
+        }
+    }
+
+    /// The name of an experiment's parameter: `wave.masses` may be called otherwise than `masses`.
+    pub fn parameter(self, experiment: &str, key: &str) -> String {
+        let own = format!("{experiment}.{key}");
+        match (self, phrases::chinese(&own)) {
+            (Self::Chinese, Some(name)) => name.to_owned(),
+            _ => self.key(key),
+        }
+    }
+
+    /// The name of a choice such as `gauss-radau-15`.
+    pub fn choice(self, word: &str) -> String {
+        if let (Self::Chinese, Some(name)) = (self, phrases::chinese(word)) {
+            return name.to_owned();
+        }
+        let mut letters = word.chars();
+        letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
+    }
+
+    /// The name of a key such as `packing_fraction`: its words.
+    pub fn key(self, key: &str) -> String {
+        if let (Self::Chinese, Some(name)) = (self, phrases::chinese(key)) {
+            return name.to_owned();
+        }
+        let words = key.replace(['_', '-'], " ");
+        let mut letters = words.chars();
+        letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gaps_are_the_same_in_every_language() {
+        for text in Text::ALL {
+            let [english, chinese] = text.entry();
+            assert!(!english.is_empty() && !chinese.is_empty(), "{text:?}");
+            assert_eq!(english.matches("{}").count(), chinese.matches("{}").count(), "{text:?}");
+        }
+    }
+
+    #[test]
+    fn sentences_are_filled_in_order() {
+        assert_eq!(Language::English.fill(Text::ChecksHold, &["3", "4"]), "3 of 4 checks hold");
+        assert!(Language::Chinese.fill(Text::ChecksHold, &["3", "4"]).contains('3'));
+    }
+
+    #[test]
+    fn keys_become_words() {
+        assert_eq!(Language::English.key("packing_fraction"), "Packing fraction");
+        assert_eq!(Language::Chinese.key("packing_fraction"), "填充率");
+        assert_eq!(Language::Chinese.key("no_such_key"), "No such key");
+    }
+}

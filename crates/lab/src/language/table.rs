@@ -1,0 +1,206 @@
+//! The table: each of the window's words, in English and in Simplified Chinese.
+
+/// Makes the words and their table from one list.
+macro_rules! table {
+    ($($name:ident: $english:literal, $chinese:literal;)*) => {
+        /// A word or a sentence of the window.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[allow(missing_docs, reason = "each is explained by the words themselves, below")]
+        pub enum Text { $($name),* }
+
+        impl Text {
+            /// All of them.
+            pub const ALL: &'static [Self] = &[$(Self::$name),*];
+
+            /// The word in each language.
+            pub(super) fn entry(self) -> [&'static str; 2] {
+                match self { $(Self::$name => [$english, $chinese]),* }
+            }
+        }
+    };
+}
+
+table! {
+    // Things of the window.
+    Stage: "Stage", "舞台";
+    Gallery: "Experiments", "实验";
+    GalleryTitle: "Choose an experiment", "选择一个实验";
+    Charts: "Charts", "图表";
+    Checks: "Checks", "检验";
+    Honesty: "Honesty", "诚实";
+    Notebook: "Notebook", "记录本";
+    Help: "Keys", "按键";
+    Timeline: "Timeline", "时间轴";
+    Colours: "Colours", "配色";
+    LanguageOf: "Language", "语言";
+    ThemeDark: "Dark", "深色";
+    ThemeLight: "Light", "浅色";
+    ThemeProjector: "Projector", "投影";
+    ToolHand: "Hand: move the view, follow a body", "手：移动视图、跟随粒子";
+    ToolRuler: "Ruler: drag a distance", "直尺：拖动量距离";
+    ToolProbe: "Probe: drag a region", "探测器：拖出一个区域";
+
+    // What keys and buttons do.
+    Play: "Play", "播放";
+    Pause: "Pause", "暂停";
+    DoTogglePlay: "Play or pause", "播放或暂停";
+    DoStep: "One step", "单步";
+    DoNextEvent: "To the next collision", "到下一次碰撞";
+    DoReverse: "Reverse all velocities", "反转所有速度";
+    DoFaster: "Faster", "加快";
+    DoSlower: "Slower", "减慢";
+    DoRestart: "From the start", "从头开始";
+    DoNewSeed: "New seed", "新的随机种子";
+    DoRemember: "Remember this moment", "记住此刻";
+    DoPreviousMoment: "Back to the moment before", "回到前一个记住的时刻";
+    DoNextMoment: "On to the next moment", "到下一个记住的时刻";
+    DoFit: "Everything in view", "显示全部";
+    DoZoomIn: "Nearer", "放大";
+    DoZoomOut: "Farther", "缩小";
+    DoNextPaint: "Colour the bodies otherwise", "更换粒子着色";
+    DoNextTool: "Next tool", "下一个工具";
+    DoStopwatch: "Stopwatch: start, stop, clear", "秒表：开始、停止、清零";
+    DoRecordRow: "Record a row", "记录一行";
+    DoPreviousExperiment: "Experiment before this", "前一个实验";
+    DoNextExperiment: "Next experiment", "下一个实验";
+    DoGallery: "Gallery of experiments", "实验陈列室";
+    DoCharts: "Show charts", "显示图表";
+    DoChecks: "Show checks against theory", "显示与理论的检验";
+    DoHonesty: "Show numerical honesty", "显示数值诚实度";
+    DoNotebook: "Show the notebook", "显示记录本";
+    DoPanels: "Panels on or off", "显示或隐藏面板";
+    DoOpen: "Open a scenario", "打开场景文件";
+    DoSave: "Save the scenario", "保存场景文件";
+    DoRecord: "Record a picture or a film", "录制图片或影片";
+    DoPalette: "Next palette", "下一种配色";
+    DoLanguage: "Next language", "下一种语言";
+    DoLarger: "Larger text", "放大文字";
+    DoSmaller: "Smaller text", "缩小文字";
+    DoHelp: "This list", "本列表";
+    DoClose: "Close what is open", "关闭打开的窗口";
+    DoQuit: "Leave", "退出";
+    HelpPointer: "Wheel: zoom about the pointer. Drag: move, or turn in space. Click: follow a body. Double click: everything in view.",
+        "滚轮：以指针为中心缩放。拖动：平移，三维中为旋转。单击：跟随粒子。双击：显示全部。";
+
+    // Time.
+    Time: "Time t", "时间 t";
+    Speed: "Speed", "速度";
+    EachSecond: " / s", " / 秒";
+    SpeedHelp: "Physical time that passes in a second. It changes how fast you watch, never what is computed.",
+        "每秒钟经过的物理时间。它只改变观看的快慢，不改变计算结果。";
+    Seed: "Seed", "种子";
+    SeedHelp: "Seed of all random numbers: the same seed gives the same run, bit for bit.", "所有随机数的种子：相同的种子逐位重现同一次运行。";
+    GoTo: "Go to a time", "前往时刻";
+    GoToHelp: "Type a time to go there, back or forth.", "输入时刻即可前往，可前可后。";
+    TimelineHelp: "Click to go to a time. Going back runs again from the start: the same bits.", "单击前往某一时刻。返回时从头重算：结果逐位相同。";
+    Travelling: "on the way to t = {}: {} %", "正在前往 t = {}：{} %";
+    TooSlow: "the engine reaches {} % of this speed", "引擎只能达到该速度的 {} %";
+    Refused: "{}: expected {}", "{}：应为 {}";
+    Failed: "the dynamics broke down: {}", "动力学计算中断：{}";
+    Unable: "not in this experiment: expected {}", "此实验不支持：需要 {}";
+    NoCollisions: "nothing collides here", "此处没有碰撞";
+
+    // Parameters.
+    GroupPreset: "Situation", "情形";
+    GroupSystem: "System", "系统";
+    GroupMeasurement: "Measurement", "测量";
+    RestartNote: "A changed value starts the run again.", "修改数值会重新开始运行。";
+    ResetTo: "Back to the default, {}", "恢复默认值 {}";
+    Expected: "expected {}", "应为 {}";
+    Range: "From {} to {}.", "从 {} 到 {}。";
+    ListRange: "At most {} numbers from {} to {}.", "最多 {} 个数，从 {} 到 {}。";
+    Automatic: "automatic", "自动";
+    OwnSystem: "A system of your own", "自定义系统";
+    OwnSystemNote: "This system is described by its scenario file:", "该系统由其场景文件描述：";
+
+    // Charts and checks.
+    Theory: "theory", "理论";
+    MakeLarge: "Click to enlarge", "单击放大";
+    SavePicture: "Save as a picture", "保存为图片";
+    SaveCsv: "Save as CSV", "保存为 CSV";
+    NoCharts: "Nothing has been measured yet.", "尚未测量任何量。";
+    NoChecks: "Nothing has been measured yet.", "尚未测量任何量。";
+    ChecksHold: "{} of {} checks hold", "{} / {} 项检验通过";
+    ChecksEarly: "Measured so far; the verdict is due at t = {}.", "目前的测量结果；t = {} 时给出结论。";
+
+    // Honesty.
+    Engine: "Engine", "引擎";
+    Pace: "Speed kept", "速度达成率";
+    PaceHelp: "Share of the asked speed that the engine reaches on this machine.", "引擎在本机上所达到的速度占要求速度的比例。";
+    Conservation: "Conserved quantities: largest error so far", "守恒量：迄今最大误差";
+    EnergyDrift: "Energy", "能量";
+    EnergyDriftHelp: "|E − E₀| / |E₀|, the largest seen.", "|E − E₀| / |E₀| 的最大值。";
+    MomentumDrift: "Momentum", "动量";
+    MomentumDriftHelp: "|p − p₀| over the sum of |m v|, the largest seen.", "|p − p₀| 除以 |m v| 之和的最大值。";
+    AngularMomentumDrift: "Angular momentum", "角动量";
+    AngularMomentumDriftHelp: "|L − L₀| over its scale, the largest seen.", "|L − L₀| 与其尺度之比的最大值。";
+    LargestOverlap: "Deepest overlap", "最大重叠";
+    LargestOverlapHelp: "Overlap over the contact distance: rounding only, since no collision is missed.",
+        "重叠量与接触距离之比：仅为舍入误差，没有漏掉的碰撞。";
+    NotConserved: "not conserved here", "此处不守恒";
+    Stability: "Stability of the time step", "时间步的稳定性";
+    StabilityNumber: "Step × highest frequency", "步长 × 最高频率";
+    StabilityHelp: "Velocity Verlet is stable below 2; accurate well below 1.", "速度 Verlet 法小于 2 时稳定；远小于 1 时才精确。";
+    NoStep: "no fixed time step", "无固定时间步";
+    Unstable: "{}: unstable", "{}：不稳定";
+    Reproducibility: "Reproducibility", "可重复性";
+    SameBits: "The same scenario and seed give the same bits: here, without a window, in a film, on one thread or many.",
+        "相同的场景和种子给出逐位相同的结果：在此窗口、无窗口、影片中，单线程或多线程皆然。";
+    SaveTable: "Save table: {}", "保存表格：{}";
+
+    // Notebook.
+    NotebookEmpty: "Record a row whenever a measurement is ready, change a parameter, and record the next. Two columns of three rows or more can be fitted with a line.",
+        "测量完成后记录一行，改变一个参数，再记录下一行。三行以上的两列可以作直线拟合。";
+    Columns: "Columns", "列";
+    ClearRows: "Clear", "清空";
+    RemoveRow: "Take away row {}", "删除第 {} 行";
+    Fit: "Straight line", "直线拟合";
+    FitNeeds: "A line needs two columns with three rows or more.", "拟合直线需要两列，且至少三行。";
+    FitWeighted: "Weighted by the standard errors of the rows.", "按各行的标准误差加权。";
+    FitByScatter: "Errors from the scatter about the line.", "误差由围绕直线的离散程度得出。";
+    Abscissa: "x", "x";
+    Ordinate: "y", "y";
+
+    // Stage.
+    PaintOwn: "as the experiment chooses", "按实验设定";
+    PaintSpeed: "by speed", "按速率";
+    PaintPlain: "all alike", "统一颜色";
+    Following: "Following body", "跟随粒子";
+    Body: "Body", "粒子";
+    Radius: "radius", "半径";
+    Density: "density", "密度";
+    Flow: "flow u", "流速 u";
+
+    // Files.
+    File: "File", "文件";
+    Save: "Save", "保存";
+    OpenHelp: "The name of a scenario file (.toml). A file can also be dropped onto the window.", "场景文件名（.toml）。也可以把文件拖放到窗口上。";
+    SaveHelp: "What runs here is always a scenario file: `corpuscle run FILE` gives the same run.", "这里运行的始终是一个场景文件：`corpuscle run 文件` 给出同样的运行。";
+    Saved: "saved: {}", "已保存：{}";
+    RecordHelp: "Made beside the window by the same engine, picture by picture: .mp4, .gif, .png, or a folder.",
+        "由同一引擎在窗口之外逐帧生成：.mp4、.gif、.png 或文件夹。";
+    RecordNeeds: "A name and a stretch of time are needed; this run ends at {}.", "需要文件名和一段时间；本次运行在 {} 结束。";
+    Recording: "recording {}", "正在录制 {}";
+    Recorded: "recorded: {}", "录制完成：{}";
+    RecordFailed: "not recorded: {}", "录制失败：{}";
+    At: "Time", "时刻";
+    From: "From t", "起始 t";
+    Until: "Until t", "终止 t";
+    Seconds: "Seconds of film", "影片秒数";
+    Fps: "Pictures a second", "每秒帧数";
+    Size: "Size in pixels", "像素尺寸";
+    WithPanels: "With the panels", "包含面板";
+
+    // Hints.
+    HintPlay: "Space lets time pass or stops it. The curves on the right are measured as it passes, beside their theory.",
+        "空格键播放或暂停。右侧曲线随时间实时测量，并与理论并列。";
+    HintStage: "Turn the wheel to zoom, drag to move, click a particle to follow it.", "滚轮缩放，拖动平移，单击粒子即可跟随。";
+    HintKeys: "Change a value on the left and the run starts again. The key ? lists everything else.", "在左侧修改数值会重新开始运行。按 ? 键查看全部功能。";
+    HintNext: "Next", "下一条";
+    HintDone: "Good", "知道了";
+    HintNever: "No hints", "不再提示";
+
+    // Faults.
+    ThreadEnded: "The simulation has ended by a fault of the program: please report it with the lines on the terminal.",
+        "模拟因程序错误而终止：请附上终端输出进行报告。";
+}

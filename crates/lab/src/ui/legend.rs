@@ -1,0 +1,78 @@
+//! Below the stage: what the colours mean, how long things are, and how many there are.
+
+use corpuscle_render::Projection;
+use corpuscle_scene::{Colour, Colouring, Scene, viridis};
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, pos2, vec2};
+
+use crate::language::Language;
+use crate::number::{one_two_five_below, significant};
+use crate::theme::Theme;
+
+/// Height of the band, in points.
+pub(super) const HEIGHT: f32 = 34.0;
+const SIZE: f32 = 12.5;
+/// Longest scale bar.
+const BAR: f64 = 130.0;
+
+/// Draws the band; `projection` is in points.
+pub(super) fn paint(painter: &Painter, band: Rect, scene: &Scene, projection: &Projection, theme: Theme, language: Language) {
+    let colours = theme.colours();
+    let mut left = band.left() + 14.0;
+    let y = band.center().y;
+    let word = |left: f32, text: &str, colour: Color32| -> f32 {
+        painter.text(pos2(left, y), Align2::LEFT_CENTER, text, FontId::proportional(SIZE), colour).right()
+    };
+    match &scene.colouring {
+        Colouring::Uniform(_) => {}
+        Colouring::Species(names) => {
+            for (index, name) in names.iter().enumerate() {
+                painter.circle_filled(pos2(left + 5.0, y), 5.0, theme.role(Colour::Accent(index as u8)));
+                left = word(left + 15.0, language.phrase(name), colours.ink) + 16.0;
+            }
+        }
+        Colouring::Speed { most, unit } => {
+            scale(painter, left, y, language.phrase("speed"), unit, [0.0, *most], &colours);
+        }
+        Colouring::Value { name, unit, least, most } => {
+            scale(painter, left, y, language.phrase(name), unit, [*least, *most], &colours);
+        }
+    }
+    if !projection.is_spatial() {
+        scale_bar(painter, band, projection, colours.quiet, colours.ink);
+    }
+}
+
+/// A bar of colours with its ends written beside it.
+fn scale(painter: &Painter, left: f32, y: f32, name: &str, unit: &str, ends: [f64; 2], colours: &crate::theme::Colours) {
+    let word = |left: f32, text: &str, colour| {
+        painter.text(pos2(left, y), Align2::LEFT_CENTER, text, FontId::proportional(SIZE), colour).right()
+    };
+    let heading = if unit.is_empty() { name.to_owned() } else { format!("{name} / {unit}") };
+    let left = word(left, &heading, colours.quiet) + 12.0;
+    let left = word(left, &significant(ends[0], 3), colours.ink) + 7.0;
+    let steps = 48;
+    let width = 120.0 / steps as f32;
+    for step in 0..steps {
+        let [r, g, b] = viridis((f64::from(step) + 0.5) / f64::from(steps)).map(|c| (255.0 * c).round() as u8);
+        let from = left + step as f32 * width;
+        let rect = Rect::from_min_size(pos2(from, y - 5.0), vec2(width + 0.5, 10.0));
+        painter.rect_filled(rect, 0.0, Color32::from_rgb(r, g, b));
+    }
+    word(left + 120.0 + 7.0, &significant(ends[1], 3), colours.ink);
+}
+
+/// A bar of a round length at the right end of the band.
+fn scale_bar(painter: &Painter, band: Rect, projection: &Projection, line: Color32, ink: Color32) {
+    let most = BAR / projection.scale;
+    if !(most.is_finite() && most > 0.0) {
+        return;
+    }
+    let length = one_two_five_below(most);
+    let width = (length * projection.scale) as f32;
+    let (right, y) = (band.right() - 14.0, band.bottom() - 10.0);
+    let points: Vec<Pos2> =
+        [(right - width, y - 6.0), (right - width, y), (right, y), (right, y - 6.0)].map(|(x, y)| pos2(x, y)).to_vec();
+    painter.add(egui::Shape::line(points, egui::Stroke::new(1.2, line)));
+    let middle = pos2(right - 0.5 * width, y - 3.0);
+    painter.text(middle, Align2::CENTER_BOTTOM, significant(length, 3), FontId::proportional(SIZE), ink);
+}

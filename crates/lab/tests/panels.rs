@@ -1,0 +1,191 @@
+//! The panels as a person meets them: by the names that a screen reader says, with clicks and keys, without OpenGL.
+
+#![allow(clippy::unwrap_used, clippy::panic)] // in the helpers too: a test that cannot be set up has failed
+
+use corpuscle_experiments::{REGISTRY, find};
+use corpuscle_io::Scenario;
+use corpuscle_lab::language::{Language, Text};
+use corpuscle_lab::model::{Model, Overlay, Tab};
+use corpuscle_lab::previews::Previews;
+use corpuscle_lab::theme::Theme;
+use corpuscle_lab::{Order, Preferences, Runner, theme, ui};
+use egui::Key;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+
+/// A window on an experiment, with its simulation's thread.
+struct Window {
+    model: Model,
+    runner: Runner,
+}
+
+fn window(name: &str, set: &[(&str, &str)], language: Language, size: [f32; 2]) -> Harness<'static, Window> {
+    let mut scenario = Scenario::new(find(name).unwrap());
+    for (key, value) in set {
+        scenario.set(key, value).unwrap();
+    }
+    let preferences = Preferences { language, theme: Theme::Dark, hints_seen: 9, ..Preferences::default() };
+    let runner = Runner::start(scenario.clone(), || {}).unwrap();
+    let state = Window { model: Model::new(REGISTRY, scenario, preferences), runner };
+    Harness::builder()
+        .with_size(size)
+        .with_context_setup(|context| {
+            context.set_fonts(theme::fonts());
+            Theme::Dark.apply(context);
+        })
+        .build_ui_state(
+            |ui, window: &mut Window| {
+                window.runner.refresh();
+                ui::show(ui, &mut window.model, window.runner.snapshot(), &Previews::none(), &mut ui::Blank);
+                for order in window.model.take_orders() {
+                    window.runner.order(order);
+                }
+            },
+            state,
+        )
+}
+
+fn small(name: &str) -> Harness<'static, Window> {
+    let set: &[(&str, &str)] = if name == "brownian" { &[("particles", "30"), ("replicas", "2")] } else { &[] };
+    window(name, set, Language::English, [1280.0, 800.0])
+}
+
+/// Steps until something is so; the simulation's thread needs its time.
+fn until(harness: &mut Harness<'static, Window>, what: &str, so: impl Fn(&Window) -> bool) {
+    for _ in 0..3000 {
+        harness.step();
+        if so(harness.state()) {
+            return;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    panic!("waited in vain for: {what}");
+}
+
+fn press(harness: &mut Harness<'static, Window>, key: Key) {
+    harness.key_press(key);
+    harness.run_steps(2);
+}
+
+#[test]
+fn the_space_bar_and_the_button_let_time_pass_and_stop_it() {
+    let mut harness = small("brownian");
+    harness.run_steps(2);
+    press(&mut harness, Key::Space);
+    until(&mut harness, "time to pass", |window| window.runner.snapshot().time > 0.0);
+    harness.get_by_label("Pause").click();
+    until(&mut harness, "the pause", |window| !window.runner.snapshot().playing);
+    let stopped = harness.state().runner.snapshot().time;
+    press(&mut harness, Key::Period);
+    until(&mut harness, "a step", |window| window.runner.snapshot().time > stopped);
+    press(&mut harness, Key::R);
+    until(&mut harness, "the start", |window| window.runner.snapshot().time == 0.0);
+}
+
+#[test]
+fn every_experiment_can_be_reached_by_keys_alone() {
+    let mut harness = small("brownian");
+    harness.run_steps(2);
+    let mut seen = vec![];
+    for _ in REGISTRY {
+        seen.push(harness.state().model.scenario.name().to_owned());
+        let run = harness.state().runner.snapshot().run;
+        press(&mut harness, Key::CloseBracket);
+        until(&mut harness, "the next experiment", |window| window.runner.snapshot().run > run);
+        until(&mut harness, "its time to pass", |window| window.runner.snapshot().time > window.runner.snapshot().start);
+        press(&mut harness, Key::Space);
+    }
+    assert_eq!(seen, REGISTRY.iter().map(|experiment| experiment.name).collect::<Vec<_>>());
+    assert_eq!(harness.state().model.scenario.name(), seen[0], "round");
+}
+
+#[test]
+fn tabs_dialogs_and_the_list_of_keys_open_and_close() {
+    let mut harness = small("wave");
+    harness.run_steps(2);
+    for (key, tab) in [(Key::Num2, Tab::Checks), (Key::Num3, Tab::Honesty), (Key::Num4, Tab::Notebook), (Key::Num1, Tab::Charts)] {
+        press(&mut harness, key);
+        assert_eq!(harness.state().model.tab, tab);
+    }
+    press(&mut harness, Key::Questionmark);
+    harness.get_by_label("This list");
+    press(&mut harness, Key::Escape);
+    assert_eq!(harness.state().model.overlay, Overlay::None);
+    press(&mut harness, Key::G);
+    for experiment in REGISTRY {
+        assert!(harness.query_all_by_label(experiment.title).next().is_some(), "{} has a card", experiment.title);
+    }
+    harness.get_by_label("Three stars and dust").click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().model.scenario.name(), "three-body");
+}
+
+#[test]
+fn a_row_is_recorded_and_the_moment_is_marked() {
+    let mut harness = small("brownian");
+    harness.run_steps(2);
+    harness.state().runner.order(Order::GoTo(30.0));
+    until(&mut harness, "the time", |window| window.runner.snapshot().time == 30.0 && window.runner.snapshot().travel.is_none());
+    press(&mut harness, Key::M);
+    press(&mut harness, Key::N);
+    press(&mut harness, Key::N);
+    let model = &harness.state().model;
+    assert_eq!(model.moments, [30.0]);
+    assert_eq!((model.tab, model.notebook.rows().len()), (Tab::Notebook, 2));
+    assert_eq!(model.notebook.rows()[0][0].value, 30.0);
+}
+
+#[test]
+fn a_refused_parameter_says_what_was_expected_and_the_run_goes_on() {
+    let mut harness = small("brownian");
+    harness.run_steps(2);
+    let parameter = find("brownian").unwrap().parameters.iter().find(|parameter| parameter.name == "radius").unwrap();
+    harness.state_mut().model.set_parameter(parameter, Some(corpuscle_experiments::Value::Real(9000.0)));
+    until(&mut harness, "the refusal", |window| window.runner.snapshot().fault.is_some());
+    assert!(harness.query_all_by_label_contains("at most").next().is_some());
+    assert!(harness.state().runner.is_alive());
+}
+
+/// Everything that can be pressed has a name for screen readers and lies wholly inside the window, in both languages and at two
+/// sizes; and every character has a glyph: the harness panics over a missing one, and over a missing name.
+#[test]
+fn whatever_can_be_pressed_has_a_name_and_a_place() {
+    use egui::accesskit::Role;
+    use egui_kittest::kittest::{By, NodeT};
+    let pressable = |role| matches!(role, Role::Button | Role::Slider | Role::SpinButton | Role::ComboBox | Role::TextInput);
+    for (language, size) in
+        [(Language::English, [1280.0, 800.0]), (Language::Chinese, [1280.0, 800.0]), (Language::Chinese, [1920.0, 1080.0])]
+    {
+        for experiment in REGISTRY.iter().take(5) {
+            let set: &[(&str, &str)] =
+                if experiment.name == "wave" || experiment.name == "three-body" { &[] } else { &[("replicas", "3")] };
+            let mut harness = window(experiment.name, set, language, size);
+            for (tab, ..) in Tab::ALL {
+                harness.state_mut().model.tab = tab;
+                harness.run_steps(3);
+                let found: Vec<_> = harness.query_all(By::new().predicate(move |node| pressable(node.role()))).collect();
+                assert!(found.len() > 15, "{} {tab:?}: only {} things to press", experiment.name, found.len());
+                for node in found {
+                    let (rect, node) = (node.rect(), node.accesskit_node());
+                    let named = node.label().is_some_and(|label| !label.is_empty()) || node.labelled_by().next().is_some();
+                    assert!(named, "{language:?} {} {tab:?}: {node:?} has no name", experiment.name);
+                    let across = rect.left() >= 0.0 && rect.right() <= size[0];
+                    assert!(across, "{language:?} {} {tab:?}: {:?} reaches outside: {rect:?}", experiment.name, node.label());
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_font_has_every_character_of_the_table_and_the_phrases() {
+    let mut harness = small("wave");
+    harness.run_steps(1);
+    let context = harness.ctx.clone();
+    let id = egui::FontId::proportional(13.0);
+    let phrases = corpuscle_lab::language::phrases::entries().map(|(_, chinese)| chinese);
+    let words = Text::ALL.iter().flat_map(|&text| Language::ALL.map(|language| language.text(text))).chain(phrases);
+    let missing: std::collections::BTreeSet<char> =
+        words.flat_map(str::chars).filter(|&c| !context.fonts_mut(|fonts| fonts.has_glyph(&id, c))).collect();
+    assert!(missing.is_empty(), "run scripts/subset-fonts.sh: the fonts lack {missing:?}");
+}
