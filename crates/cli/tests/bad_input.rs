@@ -239,7 +239,10 @@ fn systems_that_cannot_be() {
             "[collisions]\nwell = { range = 0.5, depth = 1.0 }\n",
             ["scenario.toml:11:18", "collisions.well.range = 0.5", "a number above 1"],
         ),
-        ("[collisions.viscoelastic]\nstiffness = 1.0\n", ["scenario.toml:10:1", "(incomplete)", "dissipation_time"]),
+        (
+            "[collisions.viscoelastic]\nstiffness = 1.0\n",
+            ["scenario.toml:10:1", "[collisions.viscoelastic]", "missing field `dissipation_time`"],
+        ),
         ("[growth]\nrate = 7.0\n", ["scenario.toml:11:8", "growth.rate = 7", "a number from 0.0001 to 1"]),
     ] {
         refused_file(&gas(rest), &parts);
