@@ -8,7 +8,7 @@ mod common;
 use common::{Record, dense_system, face_centred, periodic_fluid, random_system, same_bits, system_of_sizes};
 use corpuscle_checkpoint::{Reader, Writer};
 use corpuscle_core::{Boundary, Contact, Engine, Particles, Random, Vector};
-use corpuscle_event::{EventDriven, Pair, Rules};
+use corpuscle_event::{Counts, EventDriven, Pair, Rules};
 
 /// Writes an engine down and takes it up again.
 fn again<const D: usize>(engine: &EventDriven<D>) -> EventDriven<D> {
@@ -61,7 +61,10 @@ fn compare<const D: usize>(name: &str, mut unbroken: EventDriven<D>, end: f64, p
     for i in 0..unbroken.particle_count() {
         assert_eq!((unbroken.lazy(i), unbroken.images(i)), (broken.lazy(i), broken.images(i)), "{name}: particle {i}");
     }
-    assert_eq!(unbroken.counts(), broken.counts(), "{name}");
+    // Plans with a piston that has moved on are not kept, so that fewer are found to be obsolete.
+    let piston = unbroken.piston().is_some();
+    let counts = |engine: &EventDriven<D>| Counts { stale: if piston { 0 } else { engine.counts().stale }, ..engine.counts() };
+    assert_eq!(counts(&unbroken), counts(&broken), "{name}");
     assert_eq!(unbroken.piston(), broken.piston(), "{name}");
     assert_eq!(unbroken.potential_energy().to_bits(), broken.potential_energy().to_bits(), "{name}");
     expected.contacts.len()

@@ -83,9 +83,9 @@ fn of_a_chain() {
     check("chain", chain, 40.0, CHAIN);
 }
 
-const PERIODIC: u64 = 0;
-const WALLS: u64 = 0;
-const BATH: u64 = 0;
-const STARS: u64 = 0;
-const STARS_AGAIN: u64 = 0;
-const CHAIN: u64 = 0;
+const PERIODIC: u64 = 0xcd6e_49b6_2597_2bff;
+const WALLS: u64 = 0x410f_52cd_a2f4_4ebb;
+const BATH: u64 = 0x5fb8_fa74_ed10_2285;
+const STARS: u64 = 0x059d_8400_3796_fb0d;
+const STARS_AGAIN: u64 = 0xc3f5_84b5_601f_84bf;
+const CHAIN: u64 = 0xe683_801f_25ae_9276;
