@@ -54,8 +54,8 @@ fn every_experiment() {
     for name in REGISTRY.iter().map(|experiment| experiment.name) {
         let (values, share): (&[(&str, &str)], f64) = match name {
             "brownian" => (&[("replicas", "3"), ("particles", "80"), ("duration", "30")], 1.0),
-            "entropy" => (&[("replicas", "2"), ("particles", "60"), ("reverse_at", "4")], 1.0),
-            "ideal-gas" => (&[("particles", "60"), ("replicas", "2"), ("duration", "30")], 1.0),
+            "entropy" => (&[("replicas", "3"), ("particles", "60"), ("reverse_at", "4")], 1.0),
+            "ideal-gas" => (&[("particles", "60"), ("replicas", "3"), ("duration", "30")], 1.0),
             "three-body" => (&[("preset", "lagrange")], 0.3),
             _ => (&[], 1.0),
         };
@@ -102,7 +102,7 @@ const SYSTEMS: [(&str, &str); 3] = [
     ),
     (
         "fall",
-        "engine = \"event\"\nduration = 8.0\nfield = [0.0, 0.0, -1.0]\nobserve = [\"temperature\"]\n[collisions]\nrestitution = 0.9\n\
+        "engine = \"event\"\nduration = 8.0\nfield = [0.0, 0.0, -1.0]\nobserve = [\"temperature\"]\n[collisions]\nrestitution = 0.9\nelastic_below = 0.01\n\
          [box]\nlower = [0.0, 0.0, 0.0]\nupper = [8.0, 8.0, 8.0]\nfaces = \"walls\"\n[[species]]\ncount = 60\nradius = 0.5\n\
          [[particle]]\nposition = [4.0, 4.0, 4.0]\nradius = 0.4\ntrail = true\n",
     ),

@@ -86,6 +86,6 @@ fn of_a_chain() {
 const PERIODIC: u64 = 0xcd6e_49b6_2597_2bff;
 const WALLS: u64 = 0x410f_52cd_a2f4_4ebb;
 const BATH: u64 = 0x5fb8_fa74_ed10_2285;
-const STARS: u64 = 0x059d_8400_3796_fb0d;
+const STARS: u64 = 0x4be0_a82f_11f7_8a0b;
 const STARS_AGAIN: u64 = 0xc3f5_84b5_601f_84bf;
 const CHAIN: u64 = 0xe683_801f_25ae_9276;
