@@ -41,6 +41,7 @@ pub struct Fault {
 
 impl Fault {
     /// A fault found by the owner of the field being read or written.
+    #[allow(clippy::needless_pass_by_value, reason = "errors are handed over as they come")]
     pub fn new(cause: impl ToString) -> Self {
         Self { path: String::new(), cause: cause.to_string() }
     }

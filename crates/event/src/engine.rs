@@ -96,6 +96,7 @@ impl<const D: usize> EventDriven<D> {
     ///
     /// # Errors
     /// When box, particles or rules make no sense, particles overlap, or one has no mass: names what is wrong.
+    #[allow(clippy::needless_pass_by_value, reason = "the engine takes the particles over")]
     pub fn new(boundary: Boundary<D>, particles: Particles<D>, rules: Rules<D>) -> Result<Self, Invalid> {
         boundary.validate_particles(&particles)?;
         Self::start(boundary, &particles, rules, None)
@@ -109,6 +110,7 @@ impl<const D: usize> EventDriven<D> {
     ///
     /// # Errors
     /// As [`new`](Self::new); the whole spheres have to fit between the walls, those that are small yet next to each other.
+    #[allow(clippy::needless_pass_by_value, reason = "the engine takes the particles over")]
     pub fn growing(boundary: Boundary<D>, particles: Particles<D>, scale: f64, rate: f64) -> Result<Self, Invalid> {
         if !(0.0..=1.0).contains(&scale) {
             return Err(Invalid::new("scale", scale, "a number from 0 to 1"));
