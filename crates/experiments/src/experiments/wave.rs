@@ -377,6 +377,7 @@ impl Wave {
     }
 
     /// d'Alembert's solution does not know that somebody turned the wave round.
+    #[allow(clippy::unnecessary_wraps, reason = "what `resume!` calls may fail")]
     fn forget_when_reversed(&mut self) -> Result<(), Fault> {
         if self.reversed {
             self.dalembert = None;

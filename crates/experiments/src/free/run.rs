@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use corpuscle_checkpoint::{Resume, resume};
-use corpuscle_core::{Axis, Engine, Failure, Invalid, Particles, Vector};
+use corpuscle_core::{Axis, Engine, Face, Failure, Invalid, Particles, Vector};
 use corpuscle_event::Pair;
 use corpuscle_observe::{Chart, Check, Estimate, Histogram, RadialDistribution, Schedule, VirialPressure, WallPressure};
 use corpuscle_scene::{Colour, Colouring, Line, Scene, TrailPoint};
@@ -83,8 +83,6 @@ pub(super) struct Free<const D: usize> {
     degrees_of_freedom: usize,
     /// Whether collisions keep energy.
     pub(super) elastic: bool,
-    /// Whether no wall gives or takes energy, by its temperature or its motion.
-    pub(super) isolated: bool,
     /// Whether forces keep energy.
     pub(super) conservative: bool,
     /// Whether nothing takes up momentum: no wall, no field, nothing held.
@@ -114,7 +112,6 @@ impl<const D: usize> Free<D> {
         let massive = particles.mass.iter().filter(|&&mass| mass > 0.0).count();
         let shared = if closed && massive > 1 { D } else { 0 };
         let degrees_of_freedom = (D * massive).saturating_sub(held + shared).max(1);
-        let isolated = boundary.faces.iter().flatten().all(|face| face.temperature.is_none() && face.motion.is_none());
         let elastic = match &engine {
             AnyEngine::Event(engine) => engine.rules().restitution.is_elastic(),
             AnyEngine::Time(_) => true,
@@ -149,7 +146,6 @@ impl<const D: usize> Free<D> {
             start_particles: particles,
             degrees_of_freedom,
             elastic,
-            isolated,
             conservative: system.springs.iter().all(|bond| bond.damping == 0.0),
             closed,
             field: system.field.clone(),
@@ -288,9 +284,15 @@ impl<const D: usize> Free<D> {
         self.field.iter().all(|&g| g == 0.0) && empty && still
     }
 
+    /// Whether no wall gives or takes energy, by its temperature or its motion.
+    pub(super) fn isolated(&self) -> bool {
+        let quiet = |face: &Face| face.temperature.is_none() && face.motion.is_none();
+        self.engine.boundary().faces.iter().flatten().all(quiet)
+    }
+
     /// Whether particles are hard and keep their temperature: what the virial of collisions is measured under.
     pub(super) fn keeps_temperature(&self) -> bool {
-        matches!(&self.engine, AnyEngine::Event(engine) if engine.rules().pair == Pair::Hard) && self.elastic && self.isolated
+        matches!(&self.engine, AnyEngine::Event(engine) if engine.rules().pair == Pair::Hard) && self.elastic && self.isolated()
     }
 }
 
@@ -315,8 +317,8 @@ resume!(Free<const D> {
     ],
     parts: [engine],
     set_up: [
-        title, names, observe, springs, duration, structure_every, start, start_particles, degrees_of_freedom, elastic, isolated,
-        conservative, closed, field
+        title, names, observe, springs, duration, structure_every, start, start_particles, degrees_of_freedom, elastic, conservative,
+        closed, field
     ],
 });
 
@@ -414,7 +416,7 @@ impl<const D: usize> Simulation for Free<D> {
             work_unit,
             largest_overlap,
             energy_drift: match &self.engine {
-                AnyEngine::Event(_) => (self.elastic && self.isolated).then(|| self.energy.relative()),
+                AnyEngine::Event(_) => (self.elastic && self.isolated()).then(|| self.energy.relative()),
                 AnyEngine::Time(_) => self.conservative.then(|| self.motion.relative()),
             },
             momentum_drift: self.closed.then(|| self.momentum.relative()),

@@ -70,7 +70,7 @@ impl<const D: usize> Free<D> {
     }
 
     fn energy_of_collisions(&self) -> Option<Check> {
-        if !self.isolated {
+        if !self.isolated() {
             return None;
         }
         if self.elastic {
