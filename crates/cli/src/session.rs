@@ -176,7 +176,7 @@ impl Session {
             wall: wall.as_secs_f64(),
             moments: self.moments,
             pictures: self.pictures.iter().map(|picture| (picture.time, picture.caption.clone())).collect(),
-            policy: self.keeper.policy().clone(),
+            policy: *self.keeper.policy(),
         };
         let simulation = self.simulation.as_ref();
         let kept = self.keeper.write(&run, simulation, progress.now()).and_then(|()| {

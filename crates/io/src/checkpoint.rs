@@ -45,7 +45,7 @@ pub struct Run {
 }
 
 /// When checkpoints are written, and how many are kept.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Policy {
     /// Seconds on the clock between two of them.
     pub wall: Option<f64>,

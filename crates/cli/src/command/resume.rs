@@ -43,14 +43,14 @@ pub(crate) fn resume(arguments: &Arguments, registry: Registry) -> Result<ExitCo
     if !folder.join(SCENARIO).is_file() && files.is_empty() {
         return Err(refuse(folder, "the folder of a run, in which there are a scenario.toml and checkpoints"));
     }
-    let Some((checkpoint, scenario, simulation)) = newest_good(&files, registry, &folder.join(SCENARIO))? else {
+    let Some((checkpoint, scenario, simulation)) = newest_good(&files, registry, &folder.join(SCENARIO)) else {
         return from_the_beginning(arguments, registry, folder, files.is_empty());
     };
     if !arguments.quiet {
         let (title, name, seed) = (scenario.title(), scenario.name(), scenario.settings.seed);
         console::print(&format!("{title} ({name}), seed {seed}, from t = {}\n", significant(checkpoint.run.time, 5)))?;
     }
-    let mut policy = arguments.checkpoints.change(checkpoint.run.policy.clone());
+    let mut policy = arguments.checkpoints.change(checkpoint.run.policy);
     policy.pictures &= !arguments.no_pictures;
     Session::go_on(scenario, simulation, Folder::again(folder)?, checkpoint.run, policy, arguments.quiet).conduct()
 }
@@ -59,7 +59,7 @@ type Found = (Checkpoint, Scenario, Box<dyn Simulation>);
 
 /// The first of these checkpoints that can be used, with a simulation that has taken it up. What is wrong with the others is
 /// said.
-fn newest_good(files: &[PathBuf], registry: Registry, scenario: &Path) -> Result<Option<Found>, Trouble> {
+fn newest_good(files: &[PathBuf], registry: Registry, scenario: &Path) -> Option<Found> {
     for file in files {
         let found = Checkpoint::read(file).and_then(|checkpoint| {
             let refused = |refusal: Refusal| CheckpointError::Content(corpuscle_checkpoint::Fault::new(refusal));
@@ -70,11 +70,11 @@ fn newest_good(files: &[PathBuf], registry: Registry, scenario: &Path) -> Result
             Ok((checkpoint, scenario, simulation))
         });
         match found {
-            Ok(found) => return Ok(Some(found)),
+            Ok(found) => return Some(found),
             Err(error) => console::complain(&format!("{} {error}", file.display())),
         }
     }
-    Ok(None)
+    None
 }
 
 /// A run that was killed before its first checkpoint begins again; one whose checkpoints are all spoilt does not do so unasked.
