@@ -2,6 +2,7 @@
 //! leaves, to the last bit, in the state, in every series and in the summary.
 
 #![cfg(unix)]
+#![allow(clippy::unwrap_used, clippy::case_sensitive_file_extension_comparisons)] // in helpers too: a test that cannot go on has failed; names are our own
 
 use std::collections::BTreeMap;
 use std::fs;
