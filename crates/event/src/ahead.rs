@@ -2,7 +2,6 @@
 
 use crate::engine::EventDriven;
 use crate::lanes::prefetch;
-use crate::neighbours::Neighbours;
 use crate::plan::Exit;
 use crate::search::Neighbour;
 
@@ -21,8 +20,7 @@ enum Coming {
 impl<const D: usize> EventDriven<D> {
     /// More is read than a processor's inner caches hold, so that asking in advance takes less time than it saves.
     pub(crate) fn is_large(&self) -> bool {
-        let large = if matches!(self.neighbours, Neighbours::Lists(_)) { 8_000 } else { 30_000 };
-        self.flights.len() > large
+        self.flights.len() > 30_000
     }
 
     /// Asks for what the next events will need; called once an event.

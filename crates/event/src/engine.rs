@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::ops::ControlFlow;
 
+use corpuscle_core::instructions::Instructions;
 use corpuscle_core::{Axis, Boundary, Contact, Engine, Failure, Invalid, Observer, Particles, Vector};
 
 use crate::calendar::Calendar;
@@ -14,7 +15,7 @@ use crate::pages::with_large_pages;
 use crate::pair::{Growth, State};
 use crate::piston::MovingPiston;
 use crate::plan::{Plan, due};
-use crate::search::{Images, Instructions, Neighbour};
+use crate::search::{Images, Neighbour};
 use crate::surface::Surfaces;
 use crate::{Counts, Rules};
 
@@ -169,7 +170,7 @@ impl<const D: usize> EventDriven<D> {
             neighbours: Neighbours::new(&boundary, &[], 1.0, |_| Vector::ZERO, &images, &mut candidates),
             candidates,
             images,
-            instructions: Instructions::of_this_processor(),
+            instructions: Instructions::detect(),
             surfaces: Surfaces::default(),
             pairs: State::new(rules.pair, growth, n),
             bonds_unknown: true,

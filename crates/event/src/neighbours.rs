@@ -1,14 +1,16 @@
 //! Who is near whom: cells where particles are far apart, neighbour lists where they are dense.
 
 mod bins;
+mod candidates;
 mod cells;
 mod lists;
 mod reach;
 mod region;
+mod sites;
 
 use corpuscle_core::{Boundary, Vector};
 
-pub(crate) use bins::Candidates;
+pub(crate) use candidates::Candidates;
 pub(crate) use cells::Cells;
 pub(crate) use lists::Lists;
 

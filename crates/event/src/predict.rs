@@ -8,6 +8,7 @@ use crate::pair::State;
 use crate::plan::{Exit, Plan, due};
 use crate::search::{Meet, Neighbour, View, home};
 use corpuscle_core::Vector;
+use corpuscle_core::instructions::Instructions;
 
 impl<const D: usize> EventDriven<D> {
     /// Plans everything anew, for all particles.
@@ -41,13 +42,7 @@ impl<const D: usize> EventDriven<D> {
             return;
         }
         for i in 0..self.flights.len() {
-            let words = match &self.neighbours {
-                Neighbours::Lists(lists) => lists.neighbours(i).0,
-                Neighbours::Cells(cells) => {
-                    cells.collect(i, &mut self.candidates);
-                    self.candidates.found()
-                }
-            };
+            let words = self.neighbours.candidates(i, &mut self.candidates);
             let place = |i: usize| self.flights[i].position_at(self.now, self.rules.field);
             for other in words.iter().copied().map(Neighbour::from_word).filter(|other| other.slot() != i) {
                 let (j, s) = (other.slot(), self.flights[i].radius + self.flights[other.slot()].radius);
@@ -222,7 +217,7 @@ fn earlier(a: Meet, b: Meet, plans: &[Plan]) -> bool {
 #[inline]
 fn search<const D: usize, L: Law>(
     view: &View<'_, D>,
-    instructions: crate::search::Instructions,
+    instructions: Instructions,
     (plans, pairs): (&[Plan], &State),
     i: usize,
     now: f64,

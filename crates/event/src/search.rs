@@ -2,6 +2,7 @@
 #![allow(clippy::inline_always, reason = "vector instructions are used only where everything ends up in one function")]
 
 use corpuscle_core::Vector;
+use corpuscle_core::instructions::Instructions;
 
 use crate::lanes::{LANES, Lanes, Plain};
 use crate::law::Law;
@@ -96,31 +97,6 @@ pub(crate) struct View<'a, const D: usize> {
     pub(crate) field: Vector<D>,
 }
 
-/// The instructions the processor has, asked once.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Instructions {
-    #[cfg(target_arch = "x86_64")]
-    avx2: bool,
-}
-
-impl Instructions {
-    pub(crate) fn of_this_processor() -> Self {
-        Self {
-            #[cfg(target_arch = "x86_64")]
-            avx2: std::arch::is_x86_feature_detected!("avx2"),
-        }
-    }
-
-    /// Only those every machine of the kind has: for tests.
-    #[cfg(test)]
-    pub(crate) fn plain() -> Self {
-        Self {
-            #[cfg(target_arch = "x86_64")]
-            avx2: false,
-        }
-    }
-}
-
 impl<const D: usize> View<'_, D> {
     /// When `me` touches another particle: never is infinity or NaN.
     ///
@@ -145,9 +121,9 @@ impl<const D: usize> View<'_, D> {
         images: bool,
     ) -> (Meet, bool) {
         #[cfg(target_arch = "x86_64")]
-        if instructions.avx2 {
+        if instructions.has_avx2() {
             #[allow(unsafe_code, reason = "entry to the vector kernel")]
-            // SAFETY: the processor has AVX2.
+            // SAFETY: the machine has AVX2.
             return unsafe {
                 if images {
                     avx2::<D, L, FRESH, true>(*self, me, candidates)
@@ -345,8 +321,8 @@ mod tests {
             .map(|_| Neighbour::new(random.below(40), random.below(3u32.pow(D as u32)) as u8).word())
             .collect();
         for me in &flights {
-            let fast = view.earliest::<L, false>(Instructions::of_this_processor(), me, &candidates, true);
-            let plain = view.earliest::<L, false>(Instructions::plain(), me, &candidates, true);
+            let fast = view.earliest::<L, false>(Instructions::detect(), me, &candidates, true);
+            let plain = view.earliest::<L, false>(Instructions::PLAIN, me, &candidates, true);
             assert_eq!(fast.0.time.to_bits(), plain.0.time.to_bits());
             assert_eq!(fast.1, plain.1);
             let times = candidates.iter().map(|&word| view.contact::<L>(me, Neighbour::from_word(word)));

@@ -2,7 +2,9 @@
 
 use corpuscle_core::{Axis, Boundary, Vector};
 
-use crate::lanes::{LANES, prefetch};
+use super::candidates::Candidates;
+use super::sites::{Sites, Way, away};
+use crate::lanes::prefetch;
 use crate::pages::filled;
 use crate::search::{Neighbour, home};
 
@@ -25,25 +27,8 @@ pub(crate) struct Bins<const D: usize, const WORDS: usize> {
     /// Where those of each axis begin.
     first_face: [u32; D],
     places: Vec<Place<D>>,
-    /// The way to all neighbour cells, and to those that are new after a step down or up along an axis.
-    around: Vec<Way<D>>,
-    ahead: [[Vec<Way<D>>; 2]; D],
+    sites: Sites<D>,
 }
-
-/// The way from a cell to one of its neighbours.
-#[derive(Clone, Copy, Debug)]
-struct Way<const D: usize> {
-    /// Along each axis: 0 down, 1 stay, 2 up.
-    layer: [u8; D],
-    /// What to add to the index of a cell inside the box.
-    step: i32,
-}
-
-/// Index contribution of a neighbour that does not exist: it lifts the sum beyond every cell.
-const OUTSIDE: u32 = 1 << 30;
-
-/// What lifts the number of an image above all indices, those of neighbours that do not exist included.
-const IMAGE: u64 = 1 << 40;
 
 /// The particles of a cell, side by side so that they can be copied without looking how many there are; in the last word
 /// how many.
@@ -57,61 +42,6 @@ type Cell<const WORDS: usize> = [u32; WORDS];
 struct Place<const D: usize> {
     next: u32,
     cell: [u16; D],
-}
-
-/// The particles found in some cells: memory that is used again and again.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Candidates {
-    list: Vec<u32>,
-    count: usize,
-    /// Some of them are periodic images.
-    pub(crate) images: bool,
-}
-
-impl Candidates {
-    /// Those found, and more of `filler` up to a whole number of blocks.
-    #[inline]
-    pub(crate) fn padded(&mut self, filler: Neighbour) -> &[u32] {
-        self.reserve(LANES);
-        self.list[self.count..self.count + LANES].fill(filler.word());
-        &self.list[..self.count.next_multiple_of(LANES)]
-    }
-
-    #[inline]
-    pub(crate) fn clear(&mut self) {
-        (self.count, self.images) = (0, false);
-    }
-
-    #[inline]
-    pub(crate) fn push(&mut self, neighbour: Neighbour) {
-        self.reserve(1);
-        self.list[self.count] = neighbour.word();
-        self.count += 1;
-    }
-
-    /// Overwrites one of those found.
-    #[inline]
-    pub(crate) fn put(&mut self, number: usize, word: u32) {
-        self.list[number] = word;
-    }
-
-    /// Keeps the first of them only.
-    #[inline]
-    pub(crate) fn truncate(&mut self, count: usize) {
-        self.count = count;
-    }
-
-    #[inline]
-    pub(crate) fn found(&self) -> &[u32] {
-        &self.list[..self.count]
-    }
-
-    #[inline]
-    fn reserve(&mut self, more: usize) {
-        if self.list.len() < self.count + more {
-            self.list.resize(2 * (self.count + more), 0);
-        }
-    }
 }
 
 impl<const D: usize, const WORDS: usize> Bins<D, WORDS> {
@@ -134,12 +64,6 @@ impl<const D: usize, const WORDS: usize> Bins<D, WORDS> {
             stride[k] = stride[k - 1] * cells[k - 1];
         }
         let total = cells.iter().product::<u32>() as usize;
-        let around: Vec<Way<D>> = (0..3usize.pow(D as u32))
-            .map(|number| {
-                let layer: [u8; D] = std::array::from_fn(|k| (number / 3usize.pow(k as u32) % 3) as u8);
-                Way { layer, step: (0..D).map(|k| (i32::from(layer[k]) - 1) * stride[k] as i32).sum() }
-            })
-            .collect();
         let width = Vector::from_fn(|k| extent[k] / f64::from(cells[k]));
         let (mut faces, mut first_face) = (vec![], [0; D]);
         for k in 0..D {
@@ -149,24 +73,22 @@ impl<const D: usize, const WORDS: usize> Bins<D, WORDS> {
             faces.extend((1..cells[k]).map(|c| boundary.lower[k] + f64::from(c) * width[k]));
             faces.push(end(f64::INFINITY, boundary.upper[k]));
         }
+        // Where a face is going to open, particles may be outside from then on.
+        let axes = std::array::from_fn(|k| match boundary.axes[k] {
+            Axis::Walls if boundary.faces[k].iter().any(|face| face.opened_at.is_some()) => Axis::Open,
+            axis => axis,
+        });
         Self {
             lower: boundary.lower,
             width,
-            // Where a face is going to open, particles may be outside from then on.
-            axes: std::array::from_fn(|k| match boundary.axes[k] {
-                Axis::Walls if boundary.faces[k].iter().any(|face| face.opened_at.is_some()) => Axis::Open,
-                axis => axis,
-            }),
+            axes,
             cells,
             stride,
             content: filled([0; WORDS], total),
             faces,
             first_face,
             places: filled(Place { next: NONE, cell: [0; D] }, count),
-            ahead: std::array::from_fn(|k| {
-                [0, 2].map(|layer| around.iter().copied().filter(|way| way.layer[k] == layer).collect())
-            }),
-            around,
+            sites: Sites::new(axes, cells, stride),
         }
     }
 
@@ -314,67 +236,47 @@ impl<const D: usize, const WORDS: usize> Bins<D, WORDS> {
         self.places[i].cell[axis] = if up { 0 } else { (self.cells[axis] - 1) as u16 };
     }
 
-    /// Every neighbour of the cell exists, in the box itself.
-    #[inline]
-    fn inside(&self, cell: [u16; D]) -> bool {
-        (0..D).all(|k| u32::from(cell[k]).wrapping_sub(1) < self.cells[k].saturating_sub(2))
-    }
-
     /// Collects the particles of all cells around a cell, that one included.
     #[inline]
     pub(crate) fn collect_around(&self, cell: [u16; D], found: &mut Candidates) {
-        self.collect(cell, &self.around, found);
+        let site = self.sites.of(cell);
+        self.collect(cell, &site.around, site.images, found);
     }
 
     /// The same, for the layer of cells that is new after a step into this cell.
     #[inline]
     pub(crate) fn collect_ahead(&self, cell: [u16; D], axis: usize, up: bool, found: &mut Candidates) {
-        self.collect(cell, &self.ahead[axis][usize::from(up)], found);
+        let site = self.sites.of(cell);
+        self.collect(cell, &site.ahead[axis][usize::from(up)], site.images, found);
     }
 
     #[inline]
-    fn collect(&self, cell: [u16; D], ways: &[Way<D>], found: &mut Candidates) {
-        found.reserve(WORDS * ways.len());
-        if !self.inside(cell) {
+    fn collect(&self, cell: [u16; D], ways: &[Way], images: bool, found: &mut Candidates) {
+        if images {
             found.images = true;
-            return self.collect_at_border(cell, ways, found);
+            self.collect_ways::<true>(cell, ways, found);
+        } else {
+            self.collect_ways::<false>(cell, ways, found);
         }
+    }
+
+    #[inline]
+    fn collect_ways<const IMAGES: bool>(&self, cell: [u16; D], ways: &[Way], found: &mut Candidates) {
+        found.reserve(WORDS * ways.len());
         let index = self.index(cell) as i32;
         let (list, mut count) = (found.list.as_mut_slice(), found.count);
         let mut overfull = 0;
         for way in ways {
             let cell = &self.content[(index + way.step) as usize];
-            list[count..][..WORDS].copy_from_slice(cell);
+            let words = if IMAGES { cell.map(|word| word.wrapping_add(way.away)) } else { *cell };
+            list[count..][..WORDS].copy_from_slice(&words);
             count += cell[Self::SLOTS] as usize;
             overfull |= cell[Self::SLOTS];
         }
         if overfull as usize & WORDS != 0 {
-            return ways.iter().for_each(|way| self.collect_cell((index + way.step) as usize, 0, found));
+            return ways.iter().for_each(|way| self.collect_cell((index + way.step) as usize, way.away, found));
         }
         found.count = count;
-    }
-
-    /// At a face of the box: neighbours around periodic faces, none beyond others.
-    fn collect_at_border(&self, cell: [u16; D], ways: &[Way<D>], found: &mut Candidates) {
-        // Index and, from `IMAGE` on, image of a neighbour: what each axis adds.
-        let mut part = [[0; 3]; D];
-        let mut digit = IMAGE;
-        for k in 0..D {
-            let (c, last, stride) = (u32::from(cell[k]), self.cells[k] - 1, self.stride[k]);
-            let beyond = |around: u32| if self.axes[k] == Axis::Periodic { around * stride } else { OUTSIDE };
-            let down = if c == 0 { beyond(last) } else { (c - 1) * stride };
-            let up = if c == last { beyond(0) } else { (c + 1) * stride };
-            let turns = [if c == 0 { 0 } else { digit }, digit, if c == last { 2 * digit } else { digit }];
-            part[k] = [u64::from(down) + turns[0], u64::from(c * stride) + turns[1], u64::from(up) + turns[2]];
-            digit *= 3;
-        }
-        for way in ways {
-            let sum: u64 = (0..D).map(|k| part[k][way.layer[k] as usize]).sum();
-            let (index, image) = (sum % IMAGE, (sum / IMAGE) as u8);
-            if index < u64::from(OUTSIDE) {
-                self.collect_cell(index as usize, away::<D>(image), found);
-            }
-        }
     }
 
     /// All the particles of one cell, in another image: `away` is added to the words. There must be room for its slots.
@@ -394,7 +296,7 @@ impl<const D: usize, const WORDS: usize> Bins<D, WORDS> {
         found.count -= 2;
         let mut word = self.content[index][Self::SLOTS - 1];
         while word != NONE {
-            found.reserve(1 + WORDS * self.around.len());
+            found.reserve(1 + WORDS * 3usize.pow(D as u32));
             found.list[found.count] = word.wrapping_add(away);
             found.count += 1;
             word = self.places[slot(word)].next;
@@ -443,7 +345,7 @@ impl<const D: usize, const WORDS: usize> Bins<D, WORDS> {
     #[inline]
     pub(crate) fn prefetch_around(&self, cell: [u16; D]) {
         let index = self.index(cell) as i32;
-        for row in self.around.as_chunks::<3>().0 {
+        for row in self.sites.of(cell).around.as_chunks::<3>().0 {
             prefetch(&self.content, (index + row[0].step) as usize);
             prefetch(&self.content, (index + row[2].step) as usize);
         }
@@ -454,7 +356,7 @@ impl<const D: usize, const WORDS: usize> Bins<D, WORDS> {
     pub(crate) fn prefetch_ahead(&self, cell: [u16; D], axis: usize, up: bool) {
         let index = self.index(cell) as i32;
         prefetch(&self.content, index as usize);
-        for way in &self.ahead[axis][usize::from(up)] {
+        for way in &self.sites.of(cell).ahead[axis][usize::from(up)] {
             prefetch(&self.content, (index + way.step) as usize);
         }
     }
@@ -474,10 +376,4 @@ fn word<const D: usize>(i: usize) -> u32 {
 #[inline]
 fn slot(word: u32) -> usize {
     Neighbour::from_word(word).slot()
-}
-
-/// What to add to the words of a cell that is seen in this image.
-#[inline]
-fn away<const D: usize>(image: u8) -> u32 {
-    Neighbour::new(0, image).word().wrapping_sub(Neighbour::new(0, home::<D>()).word())
 }

@@ -2,7 +2,8 @@
 
 use corpuscle_core::{Boundary, Vector};
 
-use super::bins::{Bins, Candidates};
+use super::bins::Bins;
+use super::candidates::Candidates;
 use super::reach::Reach;
 use crate::motion::Flight;
 use crate::plan::Exit;

@@ -2,7 +2,8 @@
 
 use corpuscle_core::{Axis, Vector};
 
-use super::bins::{Bins, Candidates, NONE};
+use super::bins::{Bins, NONE};
+use super::candidates::Candidates;
 use crate::search::{Neighbour, opposite};
 
 /// For each cell of a level the larger particles whose surface can come into it while their centres stay in theirs.
@@ -13,6 +14,8 @@ use crate::search::{Neighbour, opposite};
 pub(crate) struct Reach<const D: usize> {
     /// Head of each cell's list; empty while no particle is larger.
     heads: Vec<u32>,
+    /// A bit for each cell: whether its list holds any. Most hold none, and bits stay in the processor's inner cache.
+    reached: Vec<u64>,
     /// Every larger particle owns a run of nodes, one for each cell of its shape.
     nodes: Vec<Node>,
     /// Cells that a sphere of some radius can reach, as offsets from that of its centre.
@@ -47,11 +50,12 @@ impl<const D: usize> Reach<D> {
     /// Registers the `larger` particles (slot and radius, sorted by slot), whose places `bins` knows; the others are at
     /// most of radius `largest_small`. No centre comes nearer to a larger one than `core` of its radius.
     pub(crate) fn new(bins: &Bins<D, 4>, larger: &[(usize, f64)], largest_small: f64, core: f64) -> Self {
-        let mut reach = Self { heads: vec![], nodes: vec![], shapes: vec![], owners: vec![] };
+        let mut reach = Self { heads: vec![], reached: vec![], nodes: vec![], shapes: vec![], owners: vec![] };
         if larger.is_empty() {
             return reach;
         }
-        reach.heads = vec![NONE; bins.cells.iter().product::<u32>() as usize];
+        reach.heads = vec![NONE; bins.count()];
+        reach.reached = vec![0; bins.count().div_ceil(64)];
         for &(slot, radius) in larger {
             let shape = reach.shapes.iter().position(|shape| shape.radius == radius).unwrap_or_else(|| {
                 reach.shapes.push(Shape { radius, offsets: offsets(bins, radius, largest_small, core) });
@@ -74,7 +78,8 @@ impl<const D: usize> Reach<D> {
     pub(crate) fn register(&mut self, bins: &Bins<D, 4>, slot: usize) {
         let owner = self.owner(slot);
         let home = bins.cell(slot);
-        for (number, &offset) in self.shapes[owner.shape as usize].offsets.iter().enumerate() {
+        for number in 0..self.shapes[owner.shape as usize].offsets.len() {
+            let offset = self.shapes[owner.shape as usize].offsets[number];
             let at = owner.first + number as u32;
             let Node { cell, next, previous, .. } = self.nodes[at as usize];
             if cell != NONE {
@@ -82,13 +87,14 @@ impl<const D: usize> Reach<D> {
                     self.nodes[next as usize].previous = previous;
                 }
                 if previous == NONE {
-                    self.heads[cell as usize] = next;
+                    self.set_head(cell as usize, next);
                 } else {
                     self.nodes[previous as usize].next = next;
                 }
             }
             let node = if let Some((index, image)) = bins.at(home, offset) {
-                let next = std::mem::replace(&mut self.heads[index], at);
+                let next = self.heads[index];
+                self.set_head(index, at);
                 if next != NONE {
                     self.nodes[next as usize].previous = at;
                 }
@@ -100,11 +106,23 @@ impl<const D: usize> Reach<D> {
         }
     }
 
+    fn set_head(&mut self, cell: usize, head: u32) {
+        self.heads[cell] = head;
+        let bit = 1 << (cell % 64);
+        if head == NONE {
+            self.reached[cell / 64] &= !bit;
+        } else {
+            self.reached[cell / 64] |= bit;
+        }
+    }
+
     /// The larger particles that a small one in this cell can touch.
     #[inline]
     pub(crate) fn collect_larger(&self, cell: usize, found: &mut Candidates) {
-        let Some(&head) = self.heads.get(cell) else { return };
-        let mut at = head;
+        if self.reached.get(cell / 64).is_none_or(|bits| bits >> (cell % 64) & 1 == 0) {
+            return;
+        }
+        let mut at = self.heads[cell];
         while at != NONE {
             let node = self.nodes[at as usize];
             found.push(node.neighbour);
