@@ -39,7 +39,13 @@ impl<const D: usize> EventDriven<D> {
         self.flights[self.slots[i] as usize].radius
     }
 
-    fn mass(&self, i: usize) -> f64 {
+    /// Species of particle `i`.
+    pub fn species(&self, i: usize) -> u16 {
+        self.bodies[self.slots[i] as usize].species
+    }
+
+    /// Mass of particle `i`.
+    pub fn mass(&self, i: usize) -> f64 {
         self.plans[self.slots[i] as usize].mass
     }
 

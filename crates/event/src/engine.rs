@@ -296,7 +296,7 @@ impl<const D: usize> EventDriven<D> {
     }
 
     /// Sorts the particles in memory, looks for all their neighbours and plans everything anew.
-    fn begin_anew(&mut self) {
+    pub(crate) fn begin_anew(&mut self) {
         for i in 0..self.flights.len() {
             self.wrap(i);
         }

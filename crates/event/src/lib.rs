@@ -39,6 +39,7 @@ mod pair;
 mod piston;
 mod plan;
 mod predict;
+mod replace;
 mod restitution;
 mod rules;
 mod search;

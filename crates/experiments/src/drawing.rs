@@ -2,7 +2,9 @@
 
 use corpuscle_core::{Axis, Boundary, Engine, Particles, Piston};
 use corpuscle_event::EventDriven;
-use corpuscle_scene::{Body, Camera, Colour, Label, Line, Scene};
+use corpuscle_scene::{Body, Camera, Colour, Label, Line, Scene, Shade};
+
+use crate::tally::Tally;
 
 /// Width of a wall on the screen, in points.
 const WALL: f32 = 2.5;
@@ -22,14 +24,22 @@ const CORNERS: usize = 48;
 const SPECK: f32 = 2.2;
 
 /// Hands the particles of an event-driven engine over untouched, each with its own clock; the renderer moves them to the
-/// scene's time. The scene counts time from `start` on the engine's clock. `shade(i)` is what the colouring reads of
-/// particle `i`.
+/// scene's time. The scene counts time from `start` on the engine's clock. `shade(i)` is what the experiment's own colouring
+/// reads of particle `i`.
 pub(crate) fn add_event_driven<const D: usize>(
     scene: &mut Scene,
     engine: &EventDriven<D>,
+    tally: &Tally,
     start: f64,
     shade: impl Fn(usize) -> f64,
 ) {
+    scene.shaded = scene.wanted;
+    let shade = |i: usize| match scene.wanted {
+        Shade::Own => shade(i),
+        Shade::Species => f64::from(engine.species(i)),
+        Shade::Mass => engine.mass(i),
+        Shade::Collisions => f64::from(tally.count(i)),
+    };
     scene.time = engine.time() - start;
     scene.least_radius = SPECK;
     scene.field = engine.rules().field.to_three();
@@ -49,14 +59,12 @@ pub(crate) fn add_event_driven<const D: usize>(
     }
 }
 
-/// Adds particles that are all as of `time`.
-pub(crate) fn add_particles<const D: usize>(
-    scene: &mut Scene,
-    time: f64,
-    particles: &Particles<D>,
-    radius: impl Fn(usize) -> f64,
-    shade: impl Fn(usize) -> f64,
-) {
+/// Adds particles that are all as of `time`, shaded by species unless something else is wanted.
+pub(crate) fn add_particles<const D: usize>(scene: &mut Scene, time: f64, particles: &Particles<D>, radius: impl Fn(usize) -> f64) {
+    // Soft particles do not collide: there is nothing to count.
+    scene.shaded = if scene.wanted == Shade::Collisions { Shade::Own } else { scene.wanted };
+    let by_mass = scene.shaded == Shade::Mass;
+    let shade = |i: usize| if by_mass { particles.mass[i] } else { f64::from(particles.species[i]) };
     scene.bodies.extend((0..particles.len()).map(|i| Body {
         position: particles.position[i].to_three(),
         velocity: particles.velocity[i].to_three(),
@@ -71,10 +79,14 @@ pub(crate) fn add_particles<const D: usize>(
 pub(crate) fn add_boundary<const D: usize>(scene: &mut Scene, boundary: &Boundary<D>, time: f64) {
     let (lower, upper) = (boundary.lower.to_three(), boundary.upper.to_three());
     scene.camera = Camera::fit(lower, upper);
+    for k in (0..D).filter(|&k| boundary.axes[k] == Axis::Periodic) {
+        scene.period[k] = upper[k] - lower[k];
+    }
     let (mut low, mut high) = (lower, upper);
     for k in (0..D).filter(|&k| boundary.axes[k] == Axis::Walls) {
         (low[k], high[k]) = (boundary.face_at(k, false, time).0, boundary.face_at(k, true, time).0);
     }
+    scene.bounds = Some([low, high]);
     let start = scene.lines.len();
     scene.add_box(low, high, WALL, Colour::Wall);
     for line in &mut scene.lines[start..] {

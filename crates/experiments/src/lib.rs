@@ -8,10 +8,12 @@ mod ensemble;
 mod experiments;
 pub mod free;
 mod gas;
+mod hand;
 mod horizon;
 pub mod parameter;
 mod peek;
 pub mod simulation;
+mod tally;
 
 pub use parameter::{Kind, Parameter, Settings, Value};
 pub use simulation::{Action, Honesty, Simulation, Table};

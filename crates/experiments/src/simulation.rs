@@ -66,15 +66,100 @@ pub trait Simulation: Send {
     /// # Errors
     /// Says so when this experiment cannot do it.
     fn act(&mut self, action: Action) -> Result<(), Invalid> {
-        Err(Invalid::new("action", format!("{action:?}"), "an action this experiment knows"))
+        action.refused("another experiment: this one has no hands on it")
     }
 }
 
-/// What a person at the window may do to a running system.
+/// What a person at the window may do to a running system, between two events. Bodies are known by their places in the scene's
+/// list; of vectors a flat system takes the first two components.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action {
     /// Reverse all velocities.
     Reverse,
+    /// Turn each velocity by a random angle of about `strength`, in radians; energy stays. Before a reversal it is Loschmidt's
+    /// question: how exact has the reversal to be?
+    Disturb {
+        /// Standard deviation of the angle.
+        strength: f64,
+        /// Seed of the random numbers.
+        seed: u64,
+    },
+    /// Carry a body to the legal place nearest to another one; it keeps its velocity.
+    Place {
+        /// The body.
+        body: usize,
+        /// Where to.
+        at: [f64; 3],
+    },
+    /// Give a body another velocity.
+    Throw {
+        /// The body.
+        body: usize,
+        /// Its new velocity.
+        velocity: [f64; 3],
+    },
+    /// Put a thin hard plate across the box, with a hole in its middle or without; what it would cut makes room.
+    Partition {
+        /// Axis across which it stands.
+        axis: usize,
+        /// Its coordinate along that axis.
+        at: f64,
+        /// Width of the hole.
+        hole: Option<f64>,
+    },
+    /// Take all plates out.
+    OpenPartitions,
+    /// Give a wall a temperature `kT`, or take it away.
+    Heat {
+        /// Axis across which the wall stands.
+        axis: usize,
+        /// Whether it is the upper of the two.
+        upper: bool,
+        /// Its temperature; none for a wall that only reflects.
+        temperature: Option<f64>,
+    },
+    /// Give the piston another velocity.
+    Push {
+        /// Its new velocity, of which the component along its axis counts.
+        velocity: [f64; 3],
+    },
+    /// Add a body of the same kind as another one, at the legal place nearest to the one asked for.
+    Add {
+        /// Where.
+        at: [f64; 3],
+        /// Its velocity.
+        velocity: [f64; 3],
+        /// The body it is like.
+        like: usize,
+    },
+    /// Take a body away; those behind it in the list move up.
+    Remove {
+        /// The body.
+        body: usize,
+    },
+}
+
+impl Action {
+    /// Its name, for a person who is told that it cannot be done.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Reverse => "reverse",
+            Self::Disturb { .. } => "disturb",
+            Self::Place { .. } => "place",
+            Self::Throw { .. } => "throw",
+            Self::Partition { .. } => "put a partition in",
+            Self::OpenPartitions => "open the partitions",
+            Self::Heat { .. } => "heat a wall",
+            Self::Push { .. } => "push the piston",
+            Self::Add { .. } => "add",
+            Self::Remove { .. } => "remove",
+        }
+    }
+
+    /// Refuses this action, and says what would have been needed for it.
+    pub(crate) fn refused<T>(self, expected: &str) -> Result<T, Invalid> {
+        Err(Invalid::new("action", self.name(), expected))
+    }
 }
 
 /// The numerical quality of a run, for the honesty panel, the report and `summary.json`.

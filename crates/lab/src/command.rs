@@ -15,6 +15,12 @@ pub enum Command {
     NextEvent,
     /// Reverse all velocities.
     Reverse,
+    /// Turn all velocities by small random angles.
+    Disturb,
+    /// Take all plates out of the box.
+    OpenPartitions,
+    /// Velocities as arrows, or not.
+    Arrows,
     /// Half as fast again.
     Faster,
     /// The other way.
@@ -109,6 +115,7 @@ pub static BINDINGS: &[Binding] = &[
     key(&[Key::Period, Key::ArrowRight], ". →", Command::Step, Text::DoStep),
     key(&[Key::C], "C", Command::NextEvent, Text::DoNextEvent),
     key(&[Key::V], "V", Command::Reverse, Text::DoReverse),
+    key(&[Key::D], "D", Command::Disturb, Text::DoDisturb),
     key(&[Key::Plus, Key::Equals], "+", Command::Faster, Text::DoFaster),
     key(&[Key::Minus], "−", Command::Slower, Text::DoSlower),
     key(&[Key::R], "R", Command::Restart, Text::DoRestart),
@@ -120,6 +127,8 @@ pub static BINDINGS: &[Binding] = &[
     key(&[Key::PageUp], "PgUp", Command::ZoomIn, Text::DoZoomIn),
     key(&[Key::PageDown], "PgDn", Command::ZoomOut, Text::DoZoomOut),
     key(&[Key::K], "K", Command::NextPaint, Text::DoNextPaint),
+    key(&[Key::A], "A", Command::Arrows, Text::DoArrows),
+    key(&[Key::O], "O", Command::OpenPartitions, Text::DoOpenPartitions),
     key(&[Key::T], "T", Command::NextTool, Text::DoNextTool),
     key(&[Key::W], "W", Command::Stopwatch, Text::DoStopwatch),
     key(&[Key::N], "N", Command::RecordRow, Text::DoRecordRow),

@@ -7,6 +7,8 @@
 pub mod phrases;
 mod table;
 
+use std::borrow::Cow;
+
 use serde::{Deserialize, Serialize};
 
 pub use table::Text;
@@ -59,23 +61,18 @@ impl Language {
 
     /// A sentence of the window with its gaps, written `{}`, filled in order.
     pub fn fill(self, text: Text, parts: &[&str]) -> String {
-        let mut parts = parts.iter();
-        let mut filled = String::new();
-        for (index, piece) in self.text(text).split("{}").enumerate() {
-            if index > 0 {
-                filled += parts.next().copied().unwrap_or_default();
-            }
-            filled += piece;
-        }
-        filled
+        phrases::filled(self.text(text), parts)
     }
 
-    /// What an experiment says of itself.
-    pub fn phrase(self, english: &str) -> &str {
-        match self {
-            Self::English => english,
-            Self::Chinese => phrases::chinese(english).unwrap_or(english),
+    /// What an experiment says of itself. A sentence with numbers in it is looked up with gaps in their places, written `{}`.
+    pub fn phrase(self, english: &str) -> Cow<'_, str> {
+        let Self::Chinese = self else { return english.into() };
+        if let Some(chinese) = phrases::chinese(english) {
+            return chinese.into();
         }
+        let (pattern, numbers) = phrases::gaps(english);
+        let Some(chinese) = phrases::chinese(&pattern).filter(|_| !numbers.is_empty()) else { return english.into() };
+        phrases::filled(chinese, &numbers).into()
     }
 
     /// The name of an experiment's parameter: `wave.masses` may be called otherwise than `masses`.
@@ -124,6 +121,16 @@ mod tests {
     fn sentences_are_filled_in_order() {
         assert_eq!(Language::English.fill(Text::ChecksHold, &["3", "4"]), "3 of 4 checks hold");
         assert!(Language::Chinese.fill(Text::ChecksHold, &["3", "4"]).contains('3'));
+    }
+
+    #[test]
+    fn numbers_are_gaps_and_words_with_digits_are_none() {
+        let (pattern, numbers) = phrases::gaps("k_B T = 1.5e-3 at S₀, V2 and −7 of 10, x1.2");
+        assert_eq!(pattern, "k_B T = {} at S₀, V2 and {} of {}, x1.2");
+        assert_eq!(numbers, ["1.5e-3", "−7", "10"]);
+        let said = Language::Chinese.phrase("400 left, 12 right");
+        assert!(said.contains("400") && said.contains("12") && !said.contains("left"), "{said}");
+        assert_eq!(Language::Chinese.phrase("nobody has translated 3"), "nobody has translated 3");
     }
 
     #[test]

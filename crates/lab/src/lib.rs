@@ -12,6 +12,7 @@ pub mod notebook;
 mod number;
 mod painter;
 pub mod preferences;
+pub mod presets;
 pub mod previews;
 pub mod runner;
 mod studio;

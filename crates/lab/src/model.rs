@@ -14,7 +14,7 @@ use crate::language::{Language, Text};
 use crate::notebook::Notebook;
 use crate::preferences::Preferences;
 use crate::runner::{Order, Paint, Snapshot};
-use crate::tools::{Stopwatch, Tool};
+use crate::tools::{self, Stopwatch, Tool, Touch};
 
 /// Factor of one press of the keys for faster and slower.
 const FACTOR: f64 = 1.5;
@@ -103,10 +103,16 @@ pub struct Model {
     pub camera: Option<Camera>,
     /// The body that is followed.
     pub followed: Option<usize>,
-    /// What the bodies' colours tell.
-    pub paint: Paint,
     /// What the pointer does on the stage.
     pub tool: Tool,
+    /// What tools are set to.
+    pub tools: tools::Settings,
+    /// A touch of the system that has not ended.
+    pub touch: Option<Touch>,
+    /// How often velocities have been disturbed: each time otherwise.
+    pub disturbances: u64,
+    /// A click on a check has opened its chart: there is a way back.
+    pub from_checks: bool,
     /// Ends of the ruler.
     pub ruler: Option<[[f64; 3]; 2]>,
     /// Corners of the probe.
@@ -149,6 +155,13 @@ pub struct Typed {
 impl Model {
     /// A window on a scenario.
     pub fn new(registry: Registry, scenario: Scenario, preferences: Preferences) -> Self {
+        let mut orders = vec![];
+        if preferences.paint != Paint::default() {
+            orders.push(Order::Paint(preferences.paint));
+        }
+        if preferences.arrows {
+            orders.push(Order::Arrows(true));
+        }
         Self {
             registry: registry.to_vec(),
             scenario,
@@ -158,8 +171,11 @@ impl Model {
             overlay: Overlay::None,
             camera: None,
             followed: None,
-            paint: Paint::default(),
             tool: Tool::default(),
+            tools: tools::Settings::default(),
+            touch: None,
+            disturbances: 0,
+            from_checks: false,
             ruler: None,
             probe: None,
             stopwatch: Stopwatch::Off,
@@ -170,7 +186,7 @@ impl Model {
             typed: Typed::default(),
             notice: None,
             leaving: false,
-            orders: vec![],
+            orders,
             jobs: vec![],
         }
     }
@@ -222,9 +238,16 @@ impl Model {
             Command::TogglePlay => self.order(Order::Play(!seen.playing)),
             Command::Step => self.order(Order::Step),
             Command::NextEvent => self.order(Order::NextEvent),
-            Command::Reverse => {
-                self.order(Order::Act(Action::Reverse));
-                self.remember(seen.time);
+            Command::Reverse => self.act(Action::Reverse),
+            Command::Disturb => {
+                self.disturbances += 1;
+                let seed = self.scenario.settings.seed.wrapping_add(self.disturbances << 32);
+                self.act(Action::Disturb { strength: self.tools.disturbance, seed });
+            }
+            Command::OpenPartitions => self.act(Action::OpenPartitions),
+            Command::Arrows => {
+                self.preferences.arrows = !self.preferences.arrows;
+                self.order(Order::Arrows(self.preferences.arrows));
             }
             Command::Faster => self.set_speed(self.speed * FACTOR),
             Command::Slower => self.set_speed(self.speed / FACTOR),
@@ -243,10 +266,7 @@ impl Model {
             Command::Fit => (self.camera, self.followed) = (None, None),
             Command::ZoomIn => self.zoom(ZOOM, seen),
             Command::ZoomOut => self.zoom(1.0 / ZOOM, seen),
-            Command::NextPaint => {
-                self.paint = self.paint.next();
-                self.order(Order::Paint(self.paint));
-            }
+            Command::NextPaint => self.set_paint(self.preferences.paint.next()),
             Command::NextTool => self.tool = self.tool.next(),
             Command::Stopwatch => self.stopwatch = self.stopwatch.pressed(seen.time),
             Command::RecordRow => {
@@ -286,7 +306,26 @@ impl Model {
     }
 
     fn show(&mut self, tab: Tab) {
+        self.from_checks &= tab == Tab::Charts;
         (self.tab, self.panels) = (tab, true);
+    }
+
+    /// Does something to the system, now.
+    pub fn act(&mut self, action: Action) {
+        self.notice = None;
+        self.order(Order::Act(action));
+    }
+
+    /// Lets the bodies' colours tell something else.
+    pub fn set_paint(&mut self, paint: Paint) {
+        self.preferences.paint = paint;
+        self.order(Order::Paint(paint));
+    }
+
+    /// Shows the chart that a check is about, with a way back to the checks.
+    pub fn show_chart(&mut self, name: &str) {
+        (self.large_chart, self.from_checks) = (Some(name.to_owned()), true);
+        self.show(Tab::Charts);
     }
 
     /// Chooses a speed, as a multiple of the usual.

@@ -14,6 +14,7 @@ fn orders(model: &mut Model) -> String {
         Order::Speed(factor) => format!("speed {factor}"),
         Order::Step => "step".into(),
         Order::Paint(paint) => format!("{paint:?}"),
+        Order::Arrows(on) => format!("arrows {on}"),
         Order::NextEvent => "next".into(),
         Order::Act(action) => format!("{action:?}"),
         Order::GoTo(time) => format!("to {time}"),

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::language::Language;
+use crate::runner::Paint;
 use crate::theme::Theme;
 
 /// Preferences of a person at this machine.
@@ -21,6 +22,10 @@ pub struct Preferences {
     pub size: [f32; 2],
     /// Experiment that was open last.
     pub experiment: Option<String>,
+    /// What the bodies' colours tell.
+    pub paint: Paint,
+    /// Whether velocities are drawn as arrows.
+    pub arrows: bool,
     /// Hints that were read or waved away.
     pub hints_seen: u8,
 }
@@ -33,7 +38,16 @@ const SIDES: [f32; 2] = [640.0, 8000.0];
 impl Default for Preferences {
     fn default() -> Self {
         let language = Language::of_the_system();
-        Self { language, theme: Theme::default(), scale: 1.0, size: [1280.0, 800.0], experiment: None, hints_seen: 0 }
+        Self {
+            language,
+            theme: Theme::default(),
+            scale: 1.0,
+            size: [1280.0, 800.0],
+            experiment: None,
+            paint: Paint::default(),
+            arrows: false,
+            hints_seen: 0,
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 pub(crate) mod driver;
 mod exchange;
 pub mod paint;
+pub(crate) mod sight;
 pub mod snapshot;
 
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};

@@ -11,6 +11,7 @@ use crate::model::{Model, Overlay, Tab};
 use crate::painter::{Hosted, Painter};
 use crate::preferences::Preferences;
 use crate::previews::Previews;
+use crate::runner::sight::Sight;
 use crate::runner::{Measured, Snapshot};
 use crate::{theme, ui};
 
@@ -49,6 +50,7 @@ pub struct Studio {
     previews: Previews,
     view: StudioView,
     seen: Snapshot,
+    sight: Sight,
     frames: u32,
 }
 
@@ -68,7 +70,7 @@ impl Studio {
         context.set_fonts(theme::fonts());
         let painter = Painter::new(surface.gl().clone());
         let seen = Snapshot { pace: 1.0, ..Snapshot::default() };
-        Ok(Self { context, glow, painter, surface, model, previews, view, seen, frames: 0 })
+        Ok(Self { context, glow, painter, surface, model, previews, view, seen, sight: Sight::default(), frames: 0 })
     }
 
     /// The window's state, to change it before a picture.
@@ -87,7 +89,9 @@ impl Studio {
         }
         seen.look += 1;
         seen.time = simulation.time();
-        simulation.draw(&mut seen.scene);
+        self.sight.set_paint(self.model.preferences.paint);
+        self.sight.set_arrows(self.model.preferences.arrows);
+        self.sight.look(simulation, &mut seen.scene);
         !seen.scene.trails.is_empty()
     }
 

@@ -6,6 +6,7 @@ mod charts;
 mod checks;
 mod dialogs;
 mod gallery;
+mod hands;
 mod help;
 mod hints;
 mod honesty;
@@ -13,8 +14,10 @@ pub(crate) mod icons;
 mod legend;
 mod notebook;
 mod parameters;
+mod related;
 mod stage;
 mod time;
+mod toolbar;
 mod widgets;
 
 use corpuscle_render::View;

@@ -30,6 +30,20 @@ pub enum Colouring {
         /// Unit shown in the legend; empty when reduced.
         unit: String,
     },
+    /// By kinetic energy `m v^2 / 2` at the scene's time, from zero to `most`, on viridis; the bodies' `shade` is their mass.
+    Energy {
+        /// Energy at the upper end of the scale.
+        most: f64,
+    },
+    /// By the coordinate along an axis at the scene's time, on viridis.
+    Height {
+        /// The axis, 0 to 2.
+        axis: usize,
+        /// Coordinate at the lower end of the scale.
+        least: f64,
+        /// Coordinate at the upper end.
+        most: f64,
+    },
     /// By the bodies' own `shade`, on viridis.
     Value {
         /// Name of the quantity.
@@ -41,6 +55,20 @@ pub enum Colouring {
         /// Value at the upper end of the scale.
         most: f64,
     },
+}
+
+/// What the bodies' `shade` holds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shade {
+    /// What the experiment's own colouring reads.
+    #[default]
+    Own,
+    /// Index of the species.
+    Species,
+    /// Mass.
+    Mass,
+    /// Number of contacts with other bodies since the start.
+    Collisions,
 }
 
 impl Default for Colouring {

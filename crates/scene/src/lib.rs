@@ -6,7 +6,7 @@ mod colour;
 mod trail;
 
 pub use camera::Camera;
-pub use colour::{Colour, Colouring, Palette, okabe_ito, viridis};
+pub use colour::{Colour, Colouring, Palette, Shade, okabe_ito, viridis};
 pub use trail::{Trail, TrailPoint};
 
 /// A disc (sphere) with its own clock: the renderer moves it along `position + velocity (t - time) + field (t - time)^2 / 2`
@@ -21,8 +21,8 @@ pub struct Body {
     pub time: f64,
     /// Radius, in the simulation's length.
     pub radius: f64,
-    /// What the colouring reads: an index of a species for [`Colouring::Species`], a value for [`Colouring::Value`];
-    /// [`Colouring::Speed`] takes the velocity instead.
+    /// What the colouring reads: an index of a species for [`Colouring::Species`], a value for [`Colouring::Value`], a mass for
+    /// [`Colouring::Energy`]; [`Colouring::Speed`] and [`Colouring::Height`] take velocity and position instead.
     pub shade: f64,
 }
 
@@ -88,18 +88,27 @@ pub struct Scene {
     pub labels: Vec<Label>,
     /// How bodies get their colour, and the legend.
     pub colouring: Colouring,
+    /// What the viewer wants the bodies' `shade` to hold. It outlives a [`clear`](Self::clear).
+    pub wanted: Shade,
+    /// What it holds: what is wanted where that is known, the experiment's own choice elsewhere.
+    pub shaded: Shade,
+    /// Sides of the box along its periodic axes, zero along others: bodies are drawn faintly again so far away.
+    pub period: [f64; 3],
+    /// Lower and upper corner of the box, where there is one.
+    pub bounds: Option<[[f64; 3]; 2]>,
     /// Smallest radius drawn, in points of the screen: bodies of a thin gas in a large box would otherwise be invisible. Zero for
     /// true size, faint below a pixel.
     pub least_radius: f32,
 }
 
 impl Scene {
-    /// Empties everything but the trails, which persist from frame to frame.
+    /// Empties everything but the trails, which persist from frame to frame, and what the viewer wants.
     pub fn clear(&mut self) {
         self.bodies.clear();
         self.lines.clear();
         self.regions.clear();
         self.labels.clear();
+        (self.shaded, self.period, self.bounds) = (Shade::Own, [0.0; 3], None);
     }
 
     /// The trail with this key, created empty when there is none yet.

@@ -18,6 +18,7 @@ use corpuscle_core::{Axis as Faces, Engine, Failure, Invalid, particles::ball_vo
 use corpuscle_observe::{Chart, Check, Curves, Estimate, Schedule, msd, theory, vacf};
 use corpuscle_scene::{Colour, Colouring, Scene, TrailPoint};
 
+use crate::hand::InHand;
 use crate::horizon::precision_horizon;
 use crate::{Action, Experiment, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, gas, peek};
 use bath::{Bath, TRACER};
@@ -197,6 +198,8 @@ struct Brownian<const D: usize> {
     schedule: Schedule,
     times: Vec<f64>,
     baths: Vec<Bath<D>>,
+    /// A copy of the first bath, once a hand has touched it.
+    in_hand: Option<InHand<D>>,
 }
 
 impl<const D: usize> Brownian<D> {
@@ -207,7 +210,7 @@ impl<const D: usize> Brownian<D> {
         let duration = settings.real("duration") * set.relaxation();
         // The baths noted their first sample when they were ready.
         let schedule = Schedule::new(set.interval).after_start();
-        Ok(Self { set, duration, schedule, times: vec![0.0], baths })
+        Ok(Self { set, duration, schedule, times: vec![0.0], baths, in_hand: None })
     }
 
     fn elapsed(&self) -> f64 {
@@ -287,7 +290,46 @@ impl<const D: usize> Brownian<D> {
     }
 }
 
-resume!(Brownian<const D> { values: [schedule, times], parts: [baths], set_up: [set, duration] });
+impl<const D: usize> Brownian<D> {
+    /// The path of the heavy particle as it was measured.
+    fn trail(&self, scene: &mut Scene) {
+        let bath = &self.baths[0];
+        let trail = scene.trail(0, TRAIL, Colour::Accent(1));
+        trail.width = 2.0;
+        let boundary = bath.engine.boundary();
+        let drawn = trail.points().back().map_or(-1.0, |point| point.time);
+        let mut before = None;
+        for (&path, &time) in bath.path.iter().zip(&self.times) {
+            let place = boundary.wrap(path);
+            if time > drawn {
+                let point = TrailPoint { position: place.to_three(), time };
+                // Through a periodic face: the wrapped step is not the real one.
+                let through = before.is_some_and(|(last_path, last_place)| {
+                    ((place - last_place) - (path - last_path)).norm() > 0.5 * self.set.side
+                });
+                if through { trail.jump(point) } else { trail.push(point) }
+            }
+            before = Some((path, place));
+        }
+    }
+
+    /// In a hand, where nothing is measured: the path from look to look.
+    fn trail_of(&self, copy: &InHand<D>, scene: &mut Scene) {
+        let (place, time) = (copy.engine.position(TRACER), scene.time);
+        let trail = scene.trail(0, TRAIL, Colour::Accent(1));
+        let last = trail.points().back().copied();
+        let point = TrailPoint { position: place.to_three(), time };
+        if last.is_none_or(|last| time > last.time) {
+            let far = last.is_some_and(|last| {
+                let step = last.position.iter().zip(point.position).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
+                step.sqrt() > 0.5 * self.set.side
+            });
+            if far { trail.jump(point) } else { trail.push(point) }
+        }
+    }
+}
+
+resume!(Brownian<const D> { values: [schedule, times], parts: [baths], set_up: [set, duration, in_hand] });
 
 impl<const D: usize> Simulation for Brownian<D> {
     fn state(&self) -> Option<&dyn Resume> {
@@ -316,31 +358,22 @@ impl<const D: usize> Simulation for Brownian<D> {
             })?;
             self.times.push(time);
         }
-        self.baths[0].advance(to)
+        let bath = &mut self.baths[0];
+        bath.advance(to)?;
+        self.in_hand.as_mut().map_or(Ok(()), |copy| copy.advance(bath.started() + to))
     }
 
     fn draw(&self, scene: &mut Scene) {
         scene.clear();
         let bath = &self.baths[0];
-        drawing::add_event_driven(scene, &bath.engine, bath.started(), |i| f64::from(u8::from(i == TRACER)));
+        let (engine, tally) = self.in_hand.as_ref().map_or((&bath.engine, &bath.tally), |copy| (&copy.engine, &copy.tally));
+        drawing::add_event_driven(scene, engine, tally, bath.started(), |i| f64::from(u8::from(i == TRACER)));
         scene.colouring = Colouring::Species(vec!["bath".into(), "heavy particle".into()]);
         scene.least_radius = 1.5; // the bath is to look small beside the heavy particle
-        let trail = scene.trail(0, TRAIL, Colour::Accent(1));
-        trail.width = 2.0;
-        let boundary = bath.engine.boundary();
-        let drawn = trail.points().back().map_or(-1.0, |point| point.time);
-        let mut before = None;
-        for (&path, &time) in bath.path.iter().zip(&self.times) {
-            let place = boundary.wrap(path);
-            if time > drawn {
-                let point = TrailPoint { position: place.to_three(), time };
-                // Through a periodic face: the wrapped step is not the real one.
-                let through = before.is_some_and(|(last_path, last_place)| {
-                    ((place - last_place) - (path - last_path)).norm() > 0.5 * self.set.side
-                });
-                if through { trail.jump(point) } else { trail.push(point) }
-            }
-            before = Some((path, place));
+        if let Some(copy) = &self.in_hand {
+            self.trail_of(copy, scene);
+        } else {
+            self.trail(scene);
         }
         let away = bath.path.last().zip(bath.path.first()).map_or(0.0, |(now, start)| (*now - *start).norm());
         scene.title = EXPERIMENT.title.into();
@@ -416,12 +449,12 @@ impl<const D: usize> Simulation for Brownian<D> {
 
     fn next_event(&self) -> Option<f64> {
         let bath = &self.baths[0];
-        peek::next_contact(&bath.engine, 1.5 * self.duration).map(|time| time - bath.started())
+        let engine = self.in_hand.as_ref().map_or(&bath.engine, |copy| &copy.engine);
+        peek::next_contact(engine, 1.5 * self.duration).map(|time| time - bath.started())
     }
 
     fn act(&mut self, action: Action) -> Result<(), Invalid> {
-        let Action::Reverse = action;
-        self.baths[0].engine.reverse_velocities();
-        Ok(())
+        let bath = &self.baths[0];
+        InHand::act(&mut self.in_hand, &bath.engine, &bath.tally, action)
     }
 }

@@ -20,7 +20,8 @@ use corpuscle_observe::{Chart, Check, Estimate, Schedule, theory};
 use corpuscle_scene::{Colour, Colouring, Label, Region, Scene};
 
 use crate::horizon::precision_horizon;
-use crate::{Action, Experiment, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, gas, peek};
+use crate::tally::Tally;
+use crate::{Action, Experiment, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, gas, hand, peek};
 use room::{Process, Room, Sample};
 
 /// The registry's entry.
@@ -218,6 +219,8 @@ struct Entropy<const D: usize> {
     replicas: Vec<Room<D>>,
     shown: Room<D>,
     echo: Option<Echo<D>>,
+    /// Somebody has done more to the room on show than turn it round: it says nothing of conservation any more.
+    touched: bool,
 }
 
 /// The way out of the room on show, remembered, and how far the way back strays from it.
@@ -242,7 +245,8 @@ impl<const D: usize> Entropy<D> {
             .collect();
         let replicas = ensemble::build(&jobs, |&(process, stream)| Room::new(&set, process, stream))?;
         let shown_process = if settings.word("process") == "mixing" { Process::Mixing } else { Process::Expansion };
-        let shown = Room::new(&set, shown_process, SHOWN_STREAM)?;
+        let mut shown = Room::new(&set, shown_process, SHOWN_STREAM)?;
+        shown.tally = Tally::of(set.particles);
         let interval = duration / SAMPLES as f64;
         let reverse_at = settings.real("reverse_at");
         if reverse_at > 0.5 * duration {
@@ -253,7 +257,7 @@ impl<const D: usize> Entropy<D> {
         let echo = (turn > 0).then(|| Echo { turn, out: vec![shown.places()], errors: vec![] });
         // The rooms took their own first sample when they opened.
         let schedule = Schedule::new(interval).after_start();
-        Ok(Self { set, duration, schedule, time: 0.0, times: vec![0.0], replicas, shown, echo })
+        Ok(Self { set, duration, schedule, time: 0.0, times: vec![0.0], replicas, shown, echo, touched: false })
     }
 
     fn take_sample(&mut self, time: f64) {
@@ -332,7 +336,7 @@ impl<const D: usize> Entropy<D> {
 resume!(Entropy<const D> {
     values: [schedule, time, times, echo],
     parts: [replicas, shown],
-    set_up: [set, duration],
+    set_up: [set, duration, touched],
 });
 
 impl<const D: usize> Simulation for Entropy<D> {
@@ -366,7 +370,7 @@ impl<const D: usize> Simulation for Entropy<D> {
     fn draw(&self, scene: &mut Scene) {
         scene.clear();
         let room = &self.shown;
-        drawing::add_event_driven(scene, &room.engine, room.opened(), |i| f64::from(room.species[i]));
+        drawing::add_event_driven(scene, &room.engine, &room.tally, room.opened(), |i| f64::from(room.species[i]));
         scene.colouring = match room.process {
             Process::Expansion => Colouring::Uniform(Colour::Accent(0)),
             Process::Mixing => Colouring::Species(vec!["started left".into(), "started right".into()]),
@@ -441,7 +445,7 @@ impl<const D: usize> Simulation for Entropy<D> {
     }
 
     fn honesty(&self) -> Honesty {
-        let rooms = || self.replicas.iter().chain([&self.shown]);
+        let rooms = || self.replicas.iter().chain((!self.touched).then_some(&self.shown));
         let drift = |room: &Room<D>| (room.engine.kinetic_energy() / room.initial_energy - 1.0).abs();
         let overlap = |engine: &EventDriven<D>| engine.boundary().largest_overlap(&engine.snapshot()) / (2.0 * self.set.radius);
         Honesty {
@@ -471,8 +475,8 @@ impl<const D: usize> Simulation for Entropy<D> {
     }
 
     fn act(&mut self, action: Action) -> Result<(), Invalid> {
-        let Action::Reverse = action;
-        self.shown.engine.reverse_velocities();
+        hand::on_number(&mut self.shown.engine, action)?;
+        self.touched |= action != Action::Reverse;
         // A hand on the system ends the comparison with the remembered way.
         self.echo = None;
         Ok(())

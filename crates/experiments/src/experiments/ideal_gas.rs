@@ -11,13 +11,16 @@ mod theory;
 
 use corpuscle_checkpoint::{Resume, resume};
 use corpuscle_core::{Axis, Engine, Failure, Invalid, Random};
+use corpuscle_event::EventDriven;
 use corpuscle_observe::{Chart, Check, Estimate};
 use corpuscle_scene::{Colouring, Scene};
 
 use crate::drawing::add_event_driven;
+use crate::hand::InHand;
 use crate::horizon::precision_horizon;
 use crate::simulation::{Honesty, Simulation, Table};
-use crate::{Experiment, Kind, Parameter, Settings, ensemble, gas, peek};
+use crate::tally::Tally;
+use crate::{Action, Experiment, Kind, Parameter, Settings, ensemble, gas, peek};
 use system::{Pace, State, System};
 
 /// Samples a crossing of the box, `a / sqrt(kT/m)`.
@@ -185,6 +188,8 @@ struct Laboratory<const D: usize> {
     /// Samples of a full measurement.
     samples: u64,
     time: f64,
+    /// A copy of the system in the window, once a hand has touched it.
+    in_hand: Option<InHand<D>>,
 }
 
 impl<const D: usize> Laboratory<D> {
@@ -219,8 +224,10 @@ impl<const D: usize> Laboratory<D> {
             Ok(Point { state, expected, replicas })
         };
         let walls = |state: &State| theory::between_walls::<D>(state.count, state.open_side(), 2.0 * state.radius);
+        let mut base_point = point(base, walls(&base), pace, true)?;
+        base_point.replicas[0].tally = Tally::of(count);
         Ok(Self {
-            base: point(base, walls(&base), pace, true)?,
+            base: base_point,
             sweeps: sweeps
                 .into_iter()
                 .map(|(law, state)| Ok((law, point(state, walls(&state), pace, false)?)))
@@ -237,6 +244,7 @@ impl<const D: usize> Laboratory<D> {
             pace,
             samples,
             time: 0.0,
+            in_hand: None,
         })
     }
 
@@ -244,6 +252,12 @@ impl<const D: usize> Laboratory<D> {
         std::iter::once(&self.base)
             .chain(self.sweeps.iter().map(|(_, point)| point))
             .chain(self.dense.iter().map(|(_, point)| point))
+    }
+
+    /// The system in the window.
+    fn on_show(&self) -> (&EventDriven<D>, &Tally) {
+        let measured = &self.base.replicas[0];
+        self.in_hand.as_ref().map_or((&measured.engine, &measured.tally), |copy| (&copy.engine, &copy.tally))
     }
 
     /// The points of a law, the base state last.
@@ -263,7 +277,7 @@ impl<const D: usize> Laboratory<D> {
 }
 
 resume!(Point<const D> { values: [], parts: [replicas], set_up: [state, expected] });
-resume!(Laboratory<const D> { values: [time], parts: [base, sweeps, dense], set_up: [pace, samples] });
+resume!(Laboratory<const D> { values: [time], parts: [base, sweeps, dense], set_up: [pace, samples, in_hand] });
 
 impl<const D: usize> Simulation for Laboratory<D> {
     fn state(&self) -> Option<&dyn Resume> {
@@ -288,7 +302,7 @@ impl<const D: usize> Simulation for Laboratory<D> {
         let mut systems: Vec<&mut System<D>> = all.flat_map(|point| &mut point.replicas).collect();
         ensemble::for_each(&mut systems, |system| system.advance(to))?;
         self.time = self.time.max(to);
-        Ok(())
+        self.in_hand.as_mut().map_or(Ok(()), |copy| copy.advance(to))
     }
 
     fn draw(&self, scene: &mut Scene) {
@@ -305,7 +319,8 @@ impl<const D: usize> Simulation for Laboratory<D> {
         let (count, temperature, volume) = (state.count, state.temperature, state.volume::<D>());
         scene.caption = format!("N = {count}, kT = {temperature}, V_acc = {volume:.0}: {reading}");
         scene.colouring = Colouring::Speed { most: 3.0 * state.thermal_speed(), unit: String::new() };
-        add_event_driven(scene, &self.base.replicas[0].engine, 0.0, |_| 0.0);
+        let (engine, tally) = self.on_show();
+        add_event_driven(scene, engine, tally, 0.0, |_| 0.0);
     }
 
     fn charts(&self) -> Vec<Chart> {
@@ -339,10 +354,14 @@ impl<const D: usize> Simulation for Laboratory<D> {
     }
 
     fn next_event(&self) -> Option<f64> {
-        peek::next_contact(&self.base.replicas[0].engine, 1.5 * self.end())
+        peek::next_contact(self.on_show().0, 1.5 * self.end())
     }
 
     fn moments(&self) -> Vec<f64> {
         vec![0.0, self.pace.warm_up as f64 * self.pace.interval]
+    }
+    fn act(&mut self, action: Action) -> Result<(), Invalid> {
+        let measured = &self.base.replicas[0];
+        InHand::act(&mut self.in_hand, &measured.engine, &measured.tally, action)
     }
 }

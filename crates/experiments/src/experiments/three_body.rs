@@ -17,7 +17,7 @@ use corpuscle_observe::{Chart, Check};
 use corpuscle_scene::Scene;
 use corpuscle_time::Integrator;
 
-use crate::{Experiment, Honesty, Kind, Parameter, Settings, Simulation, Table, ensemble};
+use crate::{Action, Experiment, Honesty, Kind, Parameter, Settings, Simulation, Table, ensemble, hand};
 use conservation::{Frame, Run};
 use dust::Parting;
 use fate::Fate;
@@ -130,6 +130,15 @@ struct ThreeBody {
     samples: u64,
     time: f64,
     aside: Option<Aside>,
+    /// The system in a hand, started from where the one on show was; the measurement goes on with the untouched one.
+    in_hand: Option<InHand>,
+}
+
+/// A copy of the system on show, with its own clock.
+struct InHand {
+    run: Run,
+    /// When it was made.
+    since: f64,
 }
 
 impl ThreeBody {
@@ -165,6 +174,7 @@ impl ThreeBody {
             samples: 0,
             time: 0.0,
             aside: None,
+            in_hand: None,
             start,
         };
         for run in &mut simulation.runs {
@@ -210,12 +220,23 @@ impl ThreeBody {
         Ok(aside)
     }
 
+    /// The system as it was last seen, to be played with.
+    fn copy(&self) -> Result<InHand, Invalid> {
+        let frame = self.path.back().ok_or_else(|| Invalid::new("action", "early", "a system that has been looked at"))?;
+        let mut start = self.start.clone();
+        start.particles.position.clone_from(&frame.position);
+        start.particles.velocity.clone_from(&frame.velocity);
+        Ok(InHand { run: Run::new(&start, self.runs[0].engine.integrator())?, since: frame.time })
+    }
+
     /// Takes in the frames all runs have sampled.
     fn take_in(&mut self) {
         let mut batches = self.runs.iter_mut().map(|run| std::mem::take(&mut run.frames));
         let mut next = || batches.next().unwrap_or_default();
         let (own, other, mut coarse) = (next(), next(), next().into_iter());
         drop(batches);
+        let mut held = self.in_hand.as_mut().map(|copy| std::mem::take(&mut copy.run.frames).into_iter());
+        let since = self.in_hand.as_ref().map_or(0.0, |copy| copy.since);
         for (frame, other) in own.into_iter().zip(other) {
             let coarse = coarse.next();
             self.parting.see(frame.time, &frame.position, &other.position);
@@ -231,7 +252,8 @@ impl ThreeBody {
             if self.path.len() == KEPT {
                 self.path.pop_front();
             }
-            self.path.push_back(frame);
+            let shown = held.as_mut().and_then(Iterator::next).map(|held| Frame { time: since + held.time, ..held });
+            self.path.push_back(shown.unwrap_or(frame));
             self.samples += 1;
         }
     }
@@ -240,7 +262,7 @@ impl ThreeBody {
 resume!(ThreeBody {
     values: [path, energy_error, other_energy_error, closure, coarse_closure, reach, samples, time],
     parts: [runs, parting],
-    set_up: [start, seed, aside],
+    set_up: [start, seed, aside, in_hand],
     then: measure_again,
 });
 
@@ -271,8 +293,12 @@ impl Simulation for ThreeBody {
             let (from, until) = (self.samples, (self.samples + BATCH).min(last + 1));
             let outcome =
                 ensemble::for_each(&mut self.runs, |run| (from..until).try_for_each(|sample| run.sample(sample as f64 * interval)));
+            let held = self
+                .in_hand
+                .as_mut()
+                .map_or(Ok(()), |copy| (from..until).try_for_each(|sample| copy.run.sample(sample as f64 * interval - copy.since)));
             self.take_in();
-            outcome?;
+            outcome.and(held)?;
         }
         self.time = self.time.max(to);
         Ok(())
@@ -347,6 +373,23 @@ impl Simulation for ThreeBody {
         } else {
             vec![0.0, 0.15 * end, 0.5 * end]
         }
+    }
+    fn act(&mut self, action: Action) -> Result<(), Invalid> {
+        if matches!(action, Action::Add { .. } | Action::Remove { .. }) {
+            return action.refused("a system of a scenario file: this experiment knows each of its bodies");
+        }
+        let mut copy = match self.in_hand.take() {
+            Some(copy) => copy,
+            None => self.copy()?,
+        };
+        let outcome = hand::on_soft(&mut copy.run.engine, action);
+        if let Some(shown) = self.path.back_mut() {
+            let particles = copy.run.engine.particles();
+            shown.position.clone_from(&particles.position);
+            shown.velocity.clone_from(&particles.velocity);
+        }
+        self.in_hand = Some(copy);
+        outcome
     }
 }
 

@@ -506,15 +506,14 @@ impl Simulation for Wave {
     }
 
     fn act(&mut self, action: Action) -> Result<(), Invalid> {
-        match action {
-            Action::Reverse => {
-                if matches!(self.start, Start::Drive { .. }) {
-                    return Err(Invalid::new("action", "reverse", "a chain without a shaker, which would go on forwards"));
-                }
-                self.reversed = true;
-                self.dalembert = None;
-                self.chain.reverse()
-            }
+        if action != Action::Reverse {
+            return action.refused("free particles: the masses of this chain are held by their springs");
         }
+        if matches!(self.start, Start::Drive { .. }) {
+            return action.refused("a chain without a shaker, which would go on forwards");
+        }
+        self.reversed = true;
+        self.dalembert = None;
+        self.chain.reverse()
     }
 }

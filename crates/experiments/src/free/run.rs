@@ -12,7 +12,8 @@ use super::build::{AnyEngine, Built, build};
 use super::spec::{Observable, System};
 use super::verdict::Conserved;
 use crate::horizon::precision_horizon;
-use crate::{Action, Honesty, Simulation, Table, drawing, peek};
+use crate::tally::Tally;
+use crate::{Action, Honesty, Simulation, Table, drawing, hand, peek};
 
 /// Samples taken when the file does not say how often.
 const SAMPLES: f64 = 500.0;
@@ -89,6 +90,12 @@ pub(super) struct Free<const D: usize> {
     pub(super) closed: bool,
     /// Uniform acceleration; empty for none.
     field: Vec<f64>,
+    /// How many coordinates are held.
+    held: usize,
+    /// When the system counts as in equilibrium: some time after the start, and after a hand has touched it.
+    settles_at: f64,
+    /// Collisions of each particle since the start.
+    tally: Tally,
 }
 
 impl<const D: usize> Free<D> {
@@ -149,6 +156,9 @@ impl<const D: usize> Free<D> {
             conservative: system.springs.iter().all(|bond| bond.damping == 0.0),
             closed,
             field: system.field.clone(),
+            held,
+            settles_at: SETTLED * system.duration,
+            tally: Tally::of(count),
         };
         free.sample();
         free.schedule = free.schedule.after_start();
@@ -177,7 +187,7 @@ impl<const D: usize> Free<D> {
         self.motion.see([energy], kinetic);
         self.lowest = self.lowest.min(energy);
         self.rise = self.rise.max(energy - self.lowest);
-        if self.settled_from.is_none() && time >= SETTLED * self.duration {
+        if self.settled_from.is_none() && time >= self.settles_at {
             self.settle(time, temperature, &particles);
         }
         if self.settled_from.is_some() {
@@ -223,6 +233,34 @@ impl<const D: usize> Free<D> {
         }
     }
 
+    /// A hand has touched the system: what is conserved counts from here, and unless all was turned round, which changes no
+    /// average, equilibrium is waited for anew.
+    fn begin_again(&mut self, action: Action) {
+        (self.momentum, self.angular_momentum) = (Conserved::new(), Conserved::new());
+        if action == Action::Reverse {
+            return;
+        }
+        (self.energy, self.motion) = (Conserved::new(), Conserved::new());
+        (self.rise, self.lowest) = (0.0, f64::INFINITY);
+        (self.settled_from, self.settles_at) = (None, self.reached + SETTLED * self.duration);
+        self.displacement.clear();
+        let particles = self.engine.snapshot();
+        self.start = (0..particles.len()).map(|i| self.engine.unwrapped(i)).collect();
+        if let Action::Remove { body } = action {
+            // Those behind it have moved up, and their trails with them.
+            self.trails.retain(|(i, _)| *i != body);
+            self.trails.iter_mut().filter(|(i, _)| *i > body).for_each(|(i, _)| *i -= 1);
+        }
+        if particles.len() != self.start_particles.len() {
+            self.tally = Tally::of(particles.len());
+            let massive = particles.mass.iter().filter(|&&mass| mass > 0.0).count();
+            let shared = if self.closed && massive > 1 { D } else { 0 };
+            self.degrees_of_freedom = (D * massive).saturating_sub(self.held + shared).max(1);
+        }
+        self.closed &= self.engine.boundary().conserves_momentum();
+        self.start_particles = particles;
+    }
+
     /// Tells the observers of the pressure how late it is, so that no block stays open for want of a collision.
     fn watch(&mut self, time: f64) {
         use corpuscle_core::Observer;
@@ -241,9 +279,9 @@ impl<const D: usize> Free<D> {
 
     fn advance_engine(&mut self, to: f64) -> Result<(), Failure> {
         if self.settled_from.is_none() {
-            return self.engine.advance(to, &mut ());
+            return self.engine.advance(to, &mut self.tally);
         }
-        self.engine.advance(to, &mut (&mut self.wall_pressure, &mut self.virial_pressure))?;
+        self.engine.advance(to, &mut (&mut self.wall_pressure, &mut self.virial_pressure, &mut self.tally))?;
         self.watch(self.engine.time());
         Ok(())
     }
@@ -318,7 +356,7 @@ resume!(Free<const D> {
     parts: [engine],
     set_up: [
         title, names, observe, springs, duration, structure_every, start, start_particles, degrees_of_freedom, elastic, conservative,
-        closed, field
+        closed, field, held, settles_at, tally
     ],
 });
 
@@ -351,7 +389,7 @@ impl<const D: usize> Simulation for Free<D> {
         match &self.engine {
             AnyEngine::Event(engine) => {
                 let species = &self.start_particles.species;
-                drawing::add_event_driven(scene, engine, 0.0, |i| f64::from(species[i]));
+                drawing::add_event_driven(scene, engine, &self.tally, 0.0, |i| f64::from(species[i]));
             }
             AnyEngine::Time(engine) => {
                 let particles = engine.particles();
@@ -360,7 +398,7 @@ impl<const D: usize> Simulation for Free<D> {
                 let size = engine.boundary().extent().norm();
                 // A point mass has no size; it is drawn as a dot, half of which is the picture's two-hundredth.
                 let radius = |i: usize| if particles.radius[i] > 0.0 { particles.radius[i] } else { 0.005 * size };
-                drawing::add_particles(scene, engine.time(), particles, radius, |i| f64::from(particles.species[i]));
+                drawing::add_particles(scene, engine.time(), particles, radius);
                 drawing::add_boundary(scene, engine.boundary(), engine.time());
                 for &[first, second] in &self.springs {
                     let from = particles.position[first];
@@ -452,13 +490,14 @@ impl<const D: usize> Simulation for Free<D> {
     }
 
     fn act(&mut self, action: Action) -> Result<(), Invalid> {
-        let Action::Reverse = action;
-        // Turning round is an outside change of momentum: what is conserved counts from here.
-        (self.momentum, self.angular_momentum) = (Conserved::new(), Conserved::new());
         match &mut self.engine {
-            AnyEngine::Event(engine) => engine.reverse_velocities(),
-            AnyEngine::Time(engine) => engine.edit(|particles| particles.velocity.iter_mut().for_each(|v| *v = -*v))?,
+            AnyEngine::Event(engine) => hand::on_hard(engine, action)?,
+            AnyEngine::Time(_) if matches!(action, Action::Remove { .. }) && !self.springs.is_empty() => {
+                return action.refused("particles without springs, which would hang on nothing");
+            }
+            AnyEngine::Time(engine) => hand::on_soft(engine, action)?,
         }
+        self.begin_again(action);
         Ok(())
     }
 }

@@ -37,6 +37,13 @@ table! {
     ThemeLight: "Light", "浅色";
     ThemeProjector: "Projector", "投影";
     ToolHand: "Hand: move the view, follow a body", "手：移动视图、跟随粒子";
+    ToolCarry: "Carry: drag a body to another place", "搬动：把粒子拖到别处";
+    ToolThrow: "Throw: drag a body's velocity; the arrow is its way in the next second", "抛掷：拖出粒子的速度；箭头是它下一秒走的路程";
+    ToolAdd: "Add: click for a body at rest, drag for one that flies", "添加：单击放一个静止的粒子，拖动放一个飞行的粒子";
+    ToolRemove: "Take away: click a body", "取走：单击一个粒子";
+    ToolPartition: "Partition: click, or drag along it; particles make room", "隔板：单击，或沿隔板方向拖动；粒子会让出位置";
+    ToolHeat: "Heat bath: click a wall", "热浴：单击器壁";
+    ToolPiston: "Piston: drag its velocity", "活塞：拖出它的速度";
     ToolRuler: "Ruler: drag a distance", "直尺：拖动量距离";
     ToolProbe: "Probe: drag a region", "探测器：拖出一个区域";
 
@@ -47,6 +54,9 @@ table! {
     DoStep: "One step", "单步";
     DoNextEvent: "To the next collision", "到下一次碰撞";
     DoReverse: "Reverse all velocities", "反转所有速度";
+    DoDisturb: "Disturb velocities by ε", "以 ε 扰动速度";
+    DoArrows: "Velocities as arrows", "用箭头显示速度";
+    DoOpenPartitions: "Open all partitions", "打开所有隔板";
     DoFaster: "Faster", "加快";
     DoSlower: "Slower", "减慢";
     DoRestart: "From the start", "从头开始";
@@ -164,12 +174,45 @@ table! {
     // Stage.
     PaintOwn: "as the experiment chooses", "按实验设定";
     PaintSpeed: "by speed", "按速率";
+    PaintEnergy: "by kinetic energy", "按动能";
+    PaintSpecies: "by species", "按种类";
+    PaintCollisions: "by collisions", "按碰撞次数";
+    PaintHeight: "by height", "按高度";
+    PaintUnknown: "This experiment does not tell that of its bodies.", "此实验不提供这一信息。";
+    Colouring: "Colours", "着色";
     PaintPlain: "all alike", "统一颜色";
+    HoleWidth: "Hole, of the width", "孔宽占比";
+    WallTemperature: "Wall kT; 0: none", "器壁 kT；0 为无";
+    Disturbance: "ε", "ε";
+    DisturbanceHelp: "Each velocity is turned by a random angle of about ε; energy stays. Disturb, then reverse: Loschmidt's question, how exact must the reversal be?",
+        "每个速度转过约为 ε 的随机角度，能量不变。先扰动再反转，即洛施密特之问：反转须多精确？";
+    Deeds: "Done by hand", "手动操作";
+    DeedsHelp: "Going back before one of these undoes it; going on repeats it, bit for bit. What is measured counts only what no hand has touched.",
+        "回到操作之前即撤销；再向前则逐位重复。测量只计未被触碰的系统。";
+    DidReverse: "reversed", "反转";
+    DidDisturb: "disturbed, ε = {}", "扰动，ε = {}";
+    DidPlace: "carried body {}", "搬动粒子 {}";
+    DidThrow: "threw body {}", "抛掷粒子 {}";
+    DidPartition: "put a partition in", "插入隔板";
+    DidOpen: "opened the partitions", "打开隔板";
+    DidHeat: "wall at kT = {}", "器壁 kT = {}";
+    DidCool: "wall without a temperature", "器壁不再恒温";
+    DidPush: "pushed the piston", "推动活塞";
+    DidAdd: "added a body", "添加粒子";
+    DidRemove: "took body {} away", "取走粒子 {}";
     Following: "Following body", "跟随粒子";
     Body: "Body", "粒子";
     Radius: "radius", "半径";
     Density: "density", "密度";
     Flow: "flow u", "流速 u";
+    KineticPressure: "P, kinetic", "P（动理部分）";
+    BackToChecks: "Back to the checks", "返回检验";
+    ShowChart: "Show its chart", "显示其图表";
+    ChiSquared: "χ² = {} in {} bins", "χ² = {}，{} 格";
+    ChiSquaredHelp: "Sum over the bins with five counts or more of ((measured − theory) / error)²; of independent counts it is expected to be as large as their number, with the standard deviation √(2 × number).",
+        "对计数不少于五的各格求和 ((测量 − 理论) / 误差)²；计数相互独立时其期望等于格数，标准差为 √(2 × 格数)。";
+    Preset: "Preset", "预设";
+    PresetNone: "Choose…", "选择…";
 
     // Files.
     File: "File", "文件";

@@ -10,6 +10,7 @@ use corpuscle_experiments::{Action, Simulation};
 use corpuscle_io::{Refusal, Scenario};
 
 use super::paint::Paint;
+use super::sight::Sight;
 use super::snapshot::{Fault, Measured, Snapshot};
 
 /// Parts the way to a picture is advanced in, so that there is a place to stop.
@@ -36,6 +37,8 @@ pub enum Order {
     Act(Action),
     /// Let the bodies' colours tell something else.
     Paint(Paint),
+    /// Draw velocities as arrows, or not.
+    Arrows(bool),
     /// Go to a physical time, back or forth, as fast as the engine can.
     GoTo(f64),
 }
@@ -52,9 +55,8 @@ pub(crate) struct Driver {
     factor: f64,
     /// How far a stride on the way to a chosen time goes.
     stride: f64,
-    /// What the colours tell, and the upper end of their scale.
-    paint: Paint,
-    most: Option<f64>,
+    /// How the viewer looks at it.
+    sight: Sight,
     seen: Snapshot,
 }
 
@@ -69,8 +71,7 @@ impl Driver {
             ahead: 0,
             factor: 1.0,
             stride: 0.0,
-            paint: Paint::default(),
-            most: None,
+            sight: Sight::default(),
             seen: Snapshot { pace: 1.0, ..Snapshot::default() },
         };
         driver.begin();
@@ -97,7 +98,7 @@ impl Driver {
         let start = self.simulation.time();
         let end = self.scenario.duration.unwrap_or_else(|| self.simulation.end());
         self.seen.run += 1;
-        self.most = None;
+        self.sight.begin();
         self.seen.scene = corpuscle_scene::Scene::default();
         (self.seen.time, self.seen.start, self.seen.end) = (start, start, end.max(start));
         self.seen.speed = self.seen.usual_speed() * self.factor;
@@ -179,6 +180,7 @@ impl Driver {
             }
         }
         self.deeds.truncate(self.ahead);
+        self.seen.deeds = Arc::new(self.deeds.clone());
         self.seen.travel = None;
         self.measure();
     }
@@ -211,7 +213,8 @@ impl Driver {
             }
             Order::NextEvent => self.next_event(),
             Order::Act(action) => self.act(action),
-            Order::Paint(paint) => (self.paint, self.most) = (paint, None),
+            Order::Paint(paint) => self.sight.set_paint(paint),
+            Order::Arrows(on) => self.sight.set_arrows(on),
             Order::GoTo(time) => self.go_to(time),
         }
     }
@@ -239,6 +242,8 @@ impl Driver {
             Ok(()) => {
                 self.deeds.push((self.seen.time, action));
                 self.ahead = self.deeds.len();
+                self.seen.deeds = Arc::new(self.deeds.clone());
+                self.measure();
             }
             Err(invalid) => self.seen.fault = Some(Fault::Unable(invalid.expected)),
         }
@@ -251,6 +256,7 @@ impl Driver {
                 return;
             }
             self.deeds.retain(|deed| deed.0 <= goal);
+            self.seen.deeds = Arc::new(self.deeds.clone());
             self.ahead = 0;
         }
         self.seen.travel = Some((self.seen.time, goal));
@@ -262,6 +268,7 @@ impl Driver {
             Ok(simulation) => {
                 (self.scenario, self.simulation) = (scenario, simulation);
                 self.deeds.clear();
+                self.seen.deeds = Arc::default();
                 self.ahead = 0;
                 self.begin();
             }
@@ -290,8 +297,7 @@ impl Driver {
     /// Brings the scene up to date.
     pub(crate) fn look(&mut self) {
         self.seen.look += 1;
-        self.simulation.draw(&mut self.seen.scene);
-        self.paint.apply(&mut self.seen.scene, &mut self.most);
+        self.sight.look(self.simulation.as_ref(), &mut self.seen.scene);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use corpuscle_experiments::{Honesty, Simulation, Table};
+use corpuscle_experiments::{Action, Honesty, Simulation, Table};
 use corpuscle_observe::{Chart, Check};
 use corpuscle_scene::Scene;
 
@@ -29,6 +29,8 @@ pub struct Snapshot {
     pub pace: f64,
     /// On the way to a chosen time: where from, and where to.
     pub travel: Option<(f64, f64)>,
+    /// What has been done to the system by hand, and when.
+    pub deeds: Arc<Vec<(f64, Action)>>,
     /// Charts, checks and honesty, made now and then.
     pub measured: Arc<Measured>,
     /// What went wrong since the last order, in the program's words.
@@ -112,6 +114,7 @@ impl Snapshot {
             speed: self.speed,
             pace: self.pace,
             travel: self.travel,
+            deeds: self.deeds.clone(),
             measured: self.measured.clone(),
             fault: self.fault.clone(),
         }
@@ -129,4 +132,5 @@ fn copy_scene(into: &mut Scene, from: &Scene) {
     into.caption.clone_from(&from.caption);
     into.colouring.clone_from(&from.colouring);
     (into.time, into.camera, into.field, into.least_radius) = (from.time, from.camera, from.field, from.least_radius);
+    (into.wanted, into.shaded, into.period, into.bounds) = (from.wanted, from.shaded, from.period, from.bounds);
 }

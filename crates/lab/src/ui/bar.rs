@@ -18,18 +18,32 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
             model.obey(Command::Gallery, seen);
         }
         ui.add_space(4.0);
-        let title = model.language().phrase(model.scenario.title()).to_owned();
+        let title = model.language().phrase(model.scenario.title()).into_owned();
         ui.label(RichText::new(title).font(FontId::new(18.0, bold())));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ends(ui, model, seen);
-            let summary = model.language().phrase(model.scenario.summary()).to_owned();
+            let summary = model.language().phrase(model.scenario.summary()).into_owned();
             ui.add_space(6.0);
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 ui.add_space(8.0);
-                ui.add(Label::new(RichText::new(summary).color(colours.quiet)).truncate());
+                let shown = whole_clauses(ui, &summary, ui.available_width() - 8.0);
+                ui.add(Label::new(RichText::new(shown).color(colours.quiet).small()).wrap()).on_hover_text(&summary);
             });
         });
     });
+}
+
+/// As many whole clauses as two lines of small text have room for: a sentence that breaks off tells less than a shorter one.
+fn whole_clauses(ui: &Ui, text: &str, width: f32) -> String {
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let fits = |text: &str| ui.painter().layout(text.to_owned(), font.clone(), egui::Color32::WHITE, width).rows.len() <= 2;
+    if fits(text) {
+        return text.to_owned();
+    }
+    let ends = text.char_indices().filter(|(_, c)| matches!(c, '.' | ':' | ',' | ';' | '。' | '：' | '，' | '；' | '、'));
+    let full = if text.is_ascii() { '.' } else { '。' };
+    let clauses = ends.map(|(end, _)| format!("{}{full}", text[..end].trim_end()));
+    clauses.filter(|clause| fits(clause)).last().unwrap_or_default()
 }
 
 /// From the right end inwards.

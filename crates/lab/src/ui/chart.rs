@@ -265,7 +265,7 @@ fn fitted(ui: &Ui, name: &str, room: f32) -> String {
 /// The name of an axis with its unit.
 fn axis_name(axis: &Axis, language: Language) -> String {
     let name = language.phrase(&axis.label);
-    if axis.unit.is_empty() { name.to_owned() } else { format!("{name} / {}", axis.unit) }
+    if axis.unit.is_empty() { name.into_owned() } else { format!("{name} / {}", axis.unit) }
 }
 
 /// Marks at round values, at most about `count` of them.
@@ -315,7 +315,7 @@ fn hover(chart: &Chart, position: &HoverPosition<'_>, language: Language) -> Opt
     let nearest = (0..series.x.len()).min_by(|&a, &b| (series.x[a] - x).abs().total_cmp(&(series.x[b] - x).abs()))?;
     let error = series.standard_error.get(nearest).copied().filter(|error| error.is_finite() && *error > 0.0);
     let mut lines =
-        vec![language.phrase(&series.name).to_owned(), format!("{} = {}", axis_name(&chart.x, language), significant(x, 4))];
+        vec![language.phrase(&series.name).into_owned(), format!("{} = {}", axis_name(&chart.x, language), significant(x, 4))];
     lines.push(format!("{} = {}", axis_name(&chart.y, language), with_error(y, error)));
     if series.style != Style::Theory
         && let Some(theory) = theory_beside(chart, series, x)
@@ -326,6 +326,26 @@ fn hover(chart: &Chart, position: &HoverPosition<'_>, language: Language) -> Opt
         }
     }
     Some(lines.join("\n"))
+}
+
+/// Counts in a bin from which on their scatter is about normal.
+const ENOUGH: f64 = 5.0;
+
+/// `chi^2 = sum ((measured - theory) / error)^2` of bars with errors beside their theory, and over how many bins: those with
+/// [`ENOUGH`] counts, which is the inverse square of the relative error. None where there are no such bars.
+pub(super) fn chi_squared(chart: &Chart) -> Option<(f64, usize)> {
+    let bars = chart.series.iter().find(|series| series.style == Style::Bars && !series.standard_error.is_empty())?;
+    let mut theories = chart.series.iter().filter(|series| series.style == Style::Theory);
+    let theory = theories.next().filter(|_| theories.next().is_none())?;
+    let full = errors(bars).filter(|&(_, y, error)| error > 0.0 && y * y >= ENOUGH * error * error);
+    let (mut sum, mut bins) = (0.0, 0);
+    for (x, y, error) in full {
+        if let Some(expected) = interpolated(theory, x) {
+            sum += ((y - expected) / error).powi(2);
+            bins += 1;
+        }
+    }
+    (bins > 1).then_some((sum, bins))
 }
 
 /// The value of a measurement's theory at `x`: of the one before it in the list, or of the only one.
@@ -370,6 +390,26 @@ mod tests {
         assert_eq!(texts((-2.2, 1.5)), ["0.01", "0.1", "1", "10"]);
         assert_eq!(texts((0.1, 0.9)), ["2", "5"]);
         assert_eq!(texts((-9.5, -3.0)), ["10⁻⁸", "10⁻⁶", "10⁻⁴"]);
+    }
+
+    /// Of Poisson counts about their theory, chi^2 is as large as the number of bins, within its own scatter.
+    #[test]
+    fn chi_squared_of_honest_counts_is_their_number() {
+        let mut random = corpuscle_core::Random::new(4, 0);
+        let (mut sum, mut all) = (0.0, 0.0);
+        for _ in 0..40 {
+            let counts: Vec<f64> = (0..20).map(|_| 400.0 + 20.0 * random.normal()).collect();
+            let bars = counts.iter().enumerate().map(|(k, &n)| (k as f64, n, 20.0));
+            let axis = || Axis::linear("x", "");
+            let chart = Chart::new("c", "", axis(), axis())
+                .with(Series::with_errors("measured", Style::Bars, bars))
+                .with(Series::new("theory", Style::Theory, [(-1.0, 400.0), (21.0, 400.0)]));
+            let (chi, bins) = chi_squared(&chart).unwrap();
+            assert_eq!(bins, 20);
+            (sum, all) = (sum + chi, all + bins as f64);
+        }
+        let z = (sum - all) / (2.0 * all).sqrt();
+        assert!(z.abs() < 4.0, "{z}");
     }
 
     #[test]

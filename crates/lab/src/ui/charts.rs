@@ -3,16 +3,18 @@
 
 use corpuscle_io::csv;
 use corpuscle_observe::Chart;
-use corpuscle_observe::chart::Style;
+use corpuscle_observe::chart::{Series, Style};
+use egui::text::{LayoutJob, TextWrapping};
 use egui::{Align, Color32, FontId, Layout, Rect, RichText, Sense, Stroke, Ui, UiBuilder, pos2, vec2};
 
-use super::chart::{Look, faces, show as plot};
+use super::chart::{Face, Look, chi_squared, faces, show as plot};
 use super::icons::Icon;
 use super::widgets::{quiet, sized_icon_button};
 use crate::language::Text;
-use crate::model::{Job, Model};
+use crate::model::{Job, Model, Tab};
+use crate::number::significant;
 use crate::runner::Snapshot;
-use crate::theme::bold;
+use crate::theme::{Theme, bold};
 
 /// Height of a small chart, at least and at most, in points.
 const SMALL: (f32, f32) = (96.0, 190.0);
@@ -59,6 +61,9 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
 fn one(ui: &mut Ui, model: &mut Model, chart: &Chart, run: u64, ink: Color32) -> bool {
     let language = model.language();
     let mut wanted = false;
+    if model.from_checks && ui.button(format!("← {}", model.text(Text::BackToChecks))).clicked() {
+        (model.tab, model.from_checks) = (Tab::Checks, false);
+    }
     ui.horizontal(|ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let tip = model.text(Text::SaveCsv);
@@ -74,7 +79,8 @@ fn one(ui: &mut Ui, model: &mut Model, chart: &Chart, run: u64, ink: Color32) ->
         });
     });
     key(ui, model, chart);
-    let note = language.phrase(&chart.note);
+    chi_squared_line(ui, model, chart);
+    let note = &*language.phrase(&chart.note);
     let lines = if note.is_empty() { 0.0 } else { note_height(ui, note) };
     let height = ui.available_height() - lines;
     let look = Look {
@@ -105,7 +111,7 @@ fn key(ui: &mut Ui, model: &Model, chart: &Chart) {
         ui.spacing_mut().item_spacing = vec2(4.0, 2.0);
         ui.spacing_mut().interact_size.y = 15.0;
         for (series, face) in chart.series.iter().zip(faces(chart, theme)) {
-            let name = model.language().phrase(&series.name);
+            let name = &*model.language().phrase(&series.name);
             // A sign and its name stay on one line.
             let font = egui::TextStyle::Small.resolve(ui.style());
             let width = 32.0 + ui.painter().layout_no_wrap(name.to_owned(), font, Color32::WHITE).size().x;
@@ -113,35 +119,67 @@ fn key(ui: &mut Ui, model: &Model, chart: &Chart) {
                 ui.end_row();
             }
             let (rect, _) = ui.allocate_exact_size(vec2(20.0, 14.0), Sense::hover());
-            let (middle, painter) = (rect.center(), ui.painter());
-            match series.style {
-                Style::Theory | Style::Line => {
-                    let ends = [rect.left_center(), rect.right_center()];
-                    let stroke = Stroke::new(theme.stroke() + 0.4, face.colour);
-                    match face.dash {
-                        0 => drop(painter.line_segment(ends, stroke)),
-                        n => painter.extend(egui::Shape::dashed_line(&ends, stroke, if n == 1 { 5.0 } else { 2.0 }, 3.0)),
-                    }
-                    if series.style == Style::Line && !series.standard_error.is_empty() {
-                        painter.rect_filled(Rect::from_center_size(middle, vec2(20.0, 9.0)), 0.0, face.colour.gamma_multiply(0.25));
-                    }
-                }
-                Style::Points => drop(painter.circle_filled(middle, 3.4, face.colour)),
-                Style::Bars => {
-                    painter.rect_filled(Rect::from_center_size(middle, vec2(12.0, 11.0)), 1.0, face.colour.gamma_multiply(0.5));
-                }
-            }
+            sign(ui.painter(), rect, series, face, theme);
             ui.label(RichText::new(name).small());
             ui.add_space(8.0);
         }
     });
 }
 
+/// How a series is drawn, in small.
+fn sign(painter: &egui::Painter, rect: Rect, series: &Series, face: Face, theme: Theme) {
+    let (middle, width) = (rect.center(), rect.width());
+    match series.style {
+        Style::Theory | Style::Line => {
+            let ends = [rect.left_center(), rect.right_center()];
+            let stroke = Stroke::new(theme.stroke() + 0.4, face.colour);
+            match face.dash {
+                0 => drop(painter.line_segment(ends, stroke)),
+                n => painter.extend(egui::Shape::dashed_line(&ends, stroke, if n == 1 { 5.0 } else { 2.0 }, 3.0)),
+            }
+            if series.style == Style::Line && !series.standard_error.is_empty() {
+                painter.rect_filled(Rect::from_center_size(middle, vec2(width, 9.0)), 0.0, face.colour.gamma_multiply(0.25));
+            }
+        }
+        Style::Points => drop(painter.circle_filled(middle, 3.4, face.colour)),
+        Style::Bars => {
+            painter.rect_filled(Rect::from_center_size(middle, vec2(0.6 * width, 11.0)), 1.0, face.colour.gamma_multiply(0.5));
+        }
+    }
+}
+
+/// Bars beside a theory: how well they agree as a whole.
+fn chi_squared_line(ui: &mut Ui, model: &Model, chart: &Chart) {
+    if let Some((chi_squared, bins)) = chi_squared(chart) {
+        let words = model.language().fill(Text::ChiSquared, &[&significant(chi_squared, 3), &bins.to_string()]);
+        ui.label(RichText::new(words).small()).on_hover_text(model.text(Text::ChiSquaredHelp));
+    }
+}
+
+/// The key of a small chart: one line, in which each series gets its share, as far as there is something to tell apart.
+fn small_key(ui: &Ui, model: &Model, chart: &Chart, rect: Rect) {
+    let theme = model.preferences.theme;
+    let share = rect.width() / chart.series.len() as f32;
+    let font = FontId::proportional(9.5);
+    let mut left = rect.left();
+    for (series, face) in chart.series.iter().zip(faces(chart, theme)) {
+        let name = model.language().phrase(&series.name);
+        let mut job = LayoutJob::single_section(name.into_owned(), egui::TextFormat::simple(font.clone(), theme.colours().quiet));
+        job.wrap = TextWrapping::truncate_at_width(share - 22.0);
+        let text = ui.painter().layout_job(job);
+        let mark = Rect::from_min_size(pos2(left, rect.top()), vec2(11.0, rect.height()));
+        sign(&ui.painter().with_clip_rect(mark), mark, series, face, theme);
+        let width = text.size().x;
+        ui.painter().galley(pos2(left + 14.0, rect.center().y - 0.5 * text.size().y), text, theme.colours().quiet);
+        left += 22.0 + width;
+    }
+}
+
 /// A small chart; whether it was chosen.
 fn tile(ui: &mut Ui, model: &Model, chart: &Chart, run: u64, rect: Rect) -> bool {
     let language = model.language();
     let colours = model.preferences.theme.colours();
-    let title = language.phrase(&chart.title);
+    let title = &*language.phrase(&chart.title);
     let response = ui.interact(rect, ui.scope_id().with(("tile", &chart.name)), Sense::click());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, title));
     let edge = if response.hovered() || response.has_focus() { colours.accent } else { colours.line };
@@ -151,6 +189,11 @@ fn tile(ui: &mut Ui, model: &Model, chart: &Chart, run: u64, rect: Rect) -> bool
     ui.scope_builder(UiBuilder::new().max_rect(inner), |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         ui.add(egui::Label::new(RichText::new(title).font(FontId::new(11.5, bold()))).truncate());
+        // A theory and a measurement tell themselves apart.
+        if chart.series.len() > 2 {
+            let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 13.0), Sense::hover());
+            small_key(ui, model, chart, rect);
+        }
         let look = Look {
             theme: model.preferences.theme,
             language,

@@ -4,7 +4,9 @@ use corpuscle_observe::Check;
 use corpuscle_observe::check::Verdict;
 use egui::{Align, Align2, Color32, FontId, Frame, Layout, Rect, RichText, Sense, Stroke, Ui, pos2, vec2};
 
-use super::widgets::quiet;
+use super::icons::Icon;
+use super::related;
+use super::widgets::{quiet, sized_icon_button};
 use crate::language::Text;
 use crate::model::{Model, Tab};
 use crate::number::{significant, with_error};
@@ -65,12 +67,20 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
         let end = significant(seen.end, 4);
         quiet(ui, &colours, &model.language().fill(Text::ChecksEarly, &[&end]));
     }
+    let mut wanted = None;
     for check in checks {
-        card(ui, model, check, is_ready(seen));
+        let chart = related::chart(&seen.measured.charts, check);
+        if card(ui, model, check, is_ready(seen), chart.is_some()) {
+            wanted = chart;
+        }
+    }
+    if let Some(name) = wanted {
+        model.show_chart(name);
     }
 }
 
-fn card(ui: &mut Ui, model: &Model, check: &Check, ready: bool) {
+/// One check; whether its chart is wanted.
+fn card(ui: &mut Ui, model: &Model, check: &Check, ready: bool, has_chart: bool) -> bool {
     let colours = model.preferences.theme.colours();
     let language = model.language();
     let (mark, colour) = mark(check.passed, ready, &colours);
@@ -79,12 +89,24 @@ fn card(ui: &mut Ui, model: &Model, check: &Check, ready: bool) {
         .stroke((1.0, colours.line))
         .corner_radius(5.0)
         .inner_margin(egui::Margin::symmetric(9, 6));
+    let mut wanted = false;
     frame.show(ui, |ui| {
         ui.set_width(ui.available_width());
         ui.spacing_mut().item_spacing.y = 3.0;
         ui.horizontal(|ui| {
             ui.label(RichText::new(mark).font(FontId::new(14.0, bold())).color(colour));
-            ui.add(egui::Label::new(language.phrase(&check.quantity)).wrap());
+            let side = vec2(22.0, 20.0);
+            let width = ui.available_width() - if has_chart { side.x + 8.0 } else { 0.0 };
+            ui.scope(|ui| {
+                ui.set_max_width(width);
+                ui.add(egui::Label::new(language.phrase(&check.quantity)).wrap());
+            });
+            if has_chart {
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    let name = format!("{}: {}", language.text(Text::ShowChart), language.phrase(&check.quantity));
+                    wanted = sized_icon_button(ui, Icon::Picture, &name, "", false, side).clicked();
+                });
+            }
         });
         let unit = if check.unit.is_empty() { String::new() } else { format!(" {}", check.unit) };
         let relation = match check.verdict {
@@ -106,9 +128,10 @@ fn card(ui: &mut Ui, model: &Model, check: &Check, ready: bool) {
             });
         });
         if !check.reference.is_empty() {
-            quiet(ui, &colours, &check.reference);
+            quiet(ui, &colours, &language.phrase(&check.reference));
         }
     });
+    wanted
 }
 
 /// Where z lies between the limits, drawn and written.

@@ -37,7 +37,7 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, previews: &Previews, easel: &
                     ui.spacing_mut().item_spacing.x = GAP;
                     for (column, experiment) in experiments.iter().enumerate() {
                         let (rect, response) = ui.allocate_exact_size(size, Sense::click());
-                        let title = model.language().phrase(experiment.title).to_owned();
+                        let title = model.language().phrase(experiment.title).into_owned();
                         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &title));
                         let index = row * columns + column;
                         if ui.is_rect_visible(rect) {
@@ -80,7 +80,7 @@ fn one(ui: &Ui, model: &Model, rect: Rect, index: usize, title: &str, lit: bool,
     let heading = painter.layout_no_wrap(title.to_owned(), FontId::new(15.0, bold()), colours.ink);
     let top = picture.bottom() + 9.0;
     painter.galley(pos2(left, top), heading.clone(), colours.ink);
-    let summary = model.language().phrase(model.registry[index].summary).to_owned();
+    let summary = model.language().phrase(model.registry[index].summary).into_owned();
     let mut job = egui::text::LayoutJob::simple(summary, FontId::proportional(12.0), colours.quiet, rect.width() - 24.0);
     job.wrap.max_rows = 3;
     let galley = painter.layout_job(job);

@@ -14,8 +14,8 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
     let language = model.language();
     let honesty = &seen.measured.honesty;
     section(ui, &colours, model.text(Text::Engine));
-    row(ui, model.text(Text::Engine), language.phrase(&honesty.engine), colours.ink);
-    row(ui, language.phrase(honesty.work_unit), &grouped(honesty.work), colours.ink);
+    row(ui, model.text(Text::Engine), &language.phrase(&honesty.engine), colours.ink);
+    row(ui, &language.phrase(honesty.work_unit), &grouped(honesty.work), colours.ink);
     let pace = if seen.playing { format!("{:.0} %", 100.0 * seen.pace.min(1.0)) } else { "—".into() };
     row(ui, model.text(Text::Pace), &pace, colours.ink).on_hover_text(model.text(Text::PaceHelp));
 

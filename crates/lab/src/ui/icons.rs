@@ -45,6 +45,24 @@ pub(crate) enum Icon {
     Open,
     /// A framed view: a picture.
     Picture,
+    /// A body, and where it goes: carry.
+    Carry,
+    /// A body with an arrow: throw.
+    Throw,
+    /// A body more.
+    Plus,
+    /// A body less.
+    Minus,
+    /// A wall with a hole.
+    Plate,
+    /// A flame: heat.
+    Flame,
+    /// A plate on a rod.
+    Piston,
+    /// An arrow: velocities.
+    Arrow,
+    /// A path that forks: disturb.
+    Fork,
 }
 
 /// Draws a sign into the middle of a rectangle.
@@ -158,6 +176,48 @@ pub(crate) fn paint(painter: &Painter, icon: Icon, rect: Rect, colour: Color32) 
             painter.rect_stroke(Rect::from_min_max(at(0.06, 0.16), at(0.94, 0.84)), 1.5, stroke, egui::StrokeKind::Middle);
             path(vec![at(0.12, 0.74), at(0.38, 0.46), at(0.54, 0.62), at(0.68, 0.5), at(0.88, 0.72)]);
             painter.circle_filled(at(0.7, 0.34), 0.08 * side, colour);
+        }
+        Icon::Carry => {
+            painter.circle_filled(at(0.24, 0.72), 0.2 * side, colour);
+            painter.circle_stroke(at(0.74, 0.26), 0.2 * side, stroke);
+            painter.extend(Shape::dashed_line(&[at(0.38, 0.58), at(0.6, 0.4)], stroke, 0.12 * side, 0.08 * side));
+        }
+        Icon::Throw => {
+            painter.circle_filled(at(0.24, 0.76), 0.2 * side, colour);
+            path(vec![at(0.38, 0.62), at(0.9, 0.1)]);
+            path(vec![at(0.58, 0.1), at(0.9, 0.1), at(0.9, 0.42)]);
+        }
+        Icon::Plus | Icon::Minus => {
+            painter.circle_stroke(at(0.5, 0.5), 0.42 * side, stroke);
+            path(vec![at(0.28, 0.5), at(0.72, 0.5)]);
+            if icon == Icon::Plus {
+                path(vec![at(0.5, 0.28), at(0.5, 0.72)]);
+            }
+        }
+        Icon::Plate => {
+            bar(0.44, 0.12, 0.02, 0.34);
+            bar(0.44, 0.12, 0.66, 0.98);
+            painter.circle_filled(at(0.16, 0.5), 0.11 * side, colour);
+            painter.circle_stroke(at(0.82, 0.5), 0.11 * side, stroke);
+        }
+        Icon::Flame => {
+            let half = [(0.5, 0.04), (0.62, 0.3), (0.8, 0.52), (0.76, 0.8), (0.5, 0.96)];
+            let other = [(0.24, 0.8), (0.2, 0.56), (0.34, 0.42), (0.4, 0.26)];
+            painter.add(Shape::closed_line(half.iter().chain(&other).map(|&(x, y)| at(x, y)).collect(), stroke));
+        }
+        Icon::Piston => {
+            path(vec![at(0.06, 0.2), at(0.06, 0.94), at(0.94, 0.94), at(0.94, 0.2)]);
+            path(vec![at(0.14, 0.56), at(0.86, 0.56)]);
+            path(vec![at(0.5, 0.56), at(0.5, 0.04)]);
+        }
+        Icon::Arrow => {
+            path(vec![at(0.1, 0.9), at(0.88, 0.12)]);
+            path(vec![at(0.5, 0.12), at(0.88, 0.12), at(0.88, 0.5)]);
+        }
+        Icon::Fork => {
+            path(vec![at(0.06, 0.5), at(0.4, 0.5), at(0.92, 0.16)]);
+            painter.extend(Shape::dashed_line(&[at(0.4, 0.5), at(0.92, 0.84)], stroke, 0.14 * side, 0.1 * side));
+            path(vec![at(0.7, 0.14), at(0.92, 0.16), at(0.86, 0.36)]);
         }
         Icon::Cross => {
             path(vec![at(0.22, 0.22), at(0.78, 0.78)]);

@@ -2,23 +2,60 @@
 
 use corpuscle_render::Projection;
 use corpuscle_scene::{Colour, Colouring, Scene, viridis};
-use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, pos2, vec2};
+use egui::{Align2, Color32, ComboBox, FontId, Painter, Pos2, Rect, Ui, UiBuilder, pos2, vec2};
 
-use crate::language::Language;
+use crate::command::Command;
+use crate::language::{Language, Text};
+use crate::model::Model;
 use crate::number::{one_two_five_below, significant};
+use crate::runner::{Paint, Snapshot};
 use crate::theme::Theme;
 
 /// Height of the band, in points.
 pub(super) const HEIGHT: f32 = 34.0;
 const SIZE: f32 = 12.5;
 /// Longest scale bar.
-const BAR: f64 = 130.0;
+const BAR: f64 = 110.0;
 
-/// Draws the band; `projection` is in points.
-pub(super) fn paint(painter: &Painter, band: Rect, scene: &Scene, projection: &Projection, theme: Theme, language: Language) {
+/// The choice of colours, what they mean, and the scale bar; `projection` is in points.
+pub(super) fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot, band: Rect, projection: &Projection) {
+    let left = choice(ui, model, seen, band);
+    let (theme, language) = (model.preferences.theme, model.language());
+    let right = if projection.is_spatial() { band.right() - 14.0 } else { scale_bar(ui.painter(), band, projection, theme) };
+    let room = Rect::from_min_max(pos2(left, band.top()), pos2(right - 10.0, band.bottom()));
+    paint(&ui.painter().with_clip_rect(room), room, &seen.scene, theme, language);
+}
+
+/// What the colours are to tell; returns where there is room beside it.
+fn choice(ui: &mut Ui, model: &mut Model, seen: &Snapshot, band: Rect) -> f32 {
+    let rect = Rect::from_min_max(band.min + vec2(10.0, 4.0), pos2(band.left() + 200.0, band.bottom() - 4.0));
+    let mut chosen = model.preferences.paint;
+    let inner = ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
+        ui.spacing_mut().interact_size.y = 24.0;
+        ui.spacing_mut().button_padding = vec2(7.0, 2.0);
+        let combo = ComboBox::from_id_salt("paint").width(0.0).selected_text(model.text(chosen.text()));
+        let response = combo.show_ui(ui, |ui| {
+            for paint in Paint::ALL {
+                ui.selectable_value(&mut chosen, paint, model.text(paint.text()));
+            }
+        });
+        let name = format!("{} {}", model.text(Text::Colouring), model.text(chosen.text()));
+        response.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, &name));
+        let known = chosen.is_known(&seen.scene);
+        let tip = if known { model.text(Text::DoNextPaint) } else { model.text(Text::PaintUnknown) };
+        response.response.on_hover_text(format!("{tip}  ({})", Command::NextPaint.key())).rect
+    });
+    if chosen != model.preferences.paint {
+        model.set_paint(chosen);
+    }
+    inner.inner.right() + 12.0
+}
+
+/// What the colours mean.
+fn paint(painter: &Painter, room: Rect, scene: &Scene, theme: Theme, language: Language) {
     let colours = theme.colours();
-    let mut left = band.left() + 14.0;
-    let y = band.center().y;
+    let mut left = room.left();
+    let y = room.center().y;
     let word = |left: f32, text: &str, colour: Color32| -> f32 {
         painter.text(pos2(left, y), Align2::LEFT_CENTER, text, FontId::proportional(SIZE), colour).right()
     };
@@ -27,18 +64,17 @@ pub(super) fn paint(painter: &Painter, band: Rect, scene: &Scene, projection: &P
         Colouring::Species(names) => {
             for (index, name) in names.iter().enumerate() {
                 painter.circle_filled(pos2(left + 5.0, y), 5.0, theme.role(Colour::Accent(index as u8)));
-                left = word(left + 15.0, language.phrase(name), colours.ink) + 16.0;
+                left = word(left + 15.0, &language.phrase(name), colours.ink) + 16.0;
             }
         }
-        Colouring::Speed { most, unit } => {
-            scale(painter, left, y, language.phrase("speed"), unit, [0.0, *most], &colours);
+        Colouring::Speed { most, unit } => scale(painter, left, y, &language.phrase("speed"), unit, [0.0, *most], &colours),
+        Colouring::Energy { most } => scale(painter, left, y, &language.phrase("kinetic energy"), "", [0.0, *most], &colours),
+        Colouring::Height { least, most, .. } => {
+            scale(painter, left, y, &language.phrase("height"), "", [*least, *most], &colours);
         }
         Colouring::Value { name, unit, least, most } => {
-            scale(painter, left, y, language.phrase(name), unit, [*least, *most], &colours);
+            scale(painter, left, y, &language.phrase(name), unit, [*least, *most], &colours);
         }
-    }
-    if !projection.is_spatial() {
-        scale_bar(painter, band, projection, colours.quiet, colours.ink);
     }
 }
 
@@ -61,18 +97,20 @@ fn scale(painter: &Painter, left: f32, y: f32, name: &str, unit: &str, ends: [f6
     word(left + 120.0 + 7.0, &significant(ends[1], 3), colours.ink);
 }
 
-/// A bar of a round length at the right end of the band.
-fn scale_bar(painter: &Painter, band: Rect, projection: &Projection, line: Color32, ink: Color32) {
+/// A bar of a round length at the right end of the band; returns where it begins.
+fn scale_bar(painter: &Painter, band: Rect, projection: &Projection, theme: Theme) -> f32 {
+    let colours = theme.colours();
     let most = BAR / projection.scale;
     if !(most.is_finite() && most > 0.0) {
-        return;
+        return band.right();
     }
     let length = one_two_five_below(most);
     let width = (length * projection.scale) as f32;
     let (right, y) = (band.right() - 14.0, band.bottom() - 10.0);
     let points: Vec<Pos2> =
         [(right - width, y - 6.0), (right - width, y), (right, y), (right, y - 6.0)].map(|(x, y)| pos2(x, y)).to_vec();
-    painter.add(egui::Shape::line(points, egui::Stroke::new(1.2, line)));
+    painter.add(egui::Shape::line(points, egui::Stroke::new(1.2, colours.quiet)));
     let middle = pos2(right - 0.5 * width, y - 3.0);
-    painter.text(middle, Align2::CENTER_BOTTOM, significant(length, 3), FontId::proportional(SIZE), ink);
+    painter.text(middle, Align2::CENTER_BOTTOM, significant(length, 3), FontId::proportional(SIZE), colours.ink);
+    right - width
 }

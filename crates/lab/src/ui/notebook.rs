@@ -3,6 +3,7 @@
 use corpuscle_io::csv;
 use egui::{ComboBox, Grid, RichText, ScrollArea, Ui};
 
+use super::hands::described;
 use super::icons::Icon;
 use super::widgets::{quiet, section, sized_icon_button};
 use crate::command::Command;
@@ -28,14 +29,27 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
             model.notebook.clear();
         }
     });
+    ui.add_space(6.0);
     if model.notebook.rows().is_empty() {
-        ui.add_space(6.0);
         quiet(ui, &colours, model.text(Text::NotebookEmpty));
+    } else {
+        table(ui, model);
+        fit(ui, model);
+    }
+    deeds(ui, model, seen);
+}
+
+/// What was done by hand in this run, and when.
+fn deeds(ui: &mut Ui, model: &Model, seen: &Snapshot) {
+    if seen.deeds.is_empty() {
         return;
     }
-    ui.add_space(6.0);
-    table(ui, model);
-    fit(ui, model);
+    let colours = model.preferences.theme.colours();
+    section(ui, &colours, model.text(Text::Deeds));
+    for &(time, action) in seen.deeds.iter() {
+        ui.label(format!("t = {}: {}", significant(time, 6), described(model.language(), action)));
+    }
+    quiet(ui, &colours, model.text(Text::DeedsHelp));
 }
 
 /// Which quantities the columns hold.
@@ -58,7 +72,7 @@ fn name(model: &Model, quantity: &Quantity) -> String {
         Quantity::Time => language.text(Text::Time).into(),
         Quantity::Seed => language.text(Text::Seed).into(),
         Quantity::Parameter(key) => language.key(key),
-        Quantity::Measured(name) => language.phrase(name).into(),
+        Quantity::Measured(name) => language.phrase(name).into_owned(),
     }
 }
 

@@ -9,6 +9,7 @@ use super::widgets::{quiet, section, sized_icon_button};
 use crate::language::Text;
 use crate::model::Model;
 use crate::number::significant;
+use crate::presets;
 use crate::runner::{Fault, Snapshot};
 
 /// Parameters that choose a whole situation.
@@ -33,6 +34,7 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
         ui.spacing_mut().item_spacing.y = 2.0;
         ui.spacing_mut().interact_size.y = 22.0;
         ui.spacing_mut().button_padding.y = 2.0;
+        presets(ui, model, experiment.name);
         for (index, heading) in [Text::GroupPreset, Text::GroupSystem, Text::GroupMeasurement].into_iter().enumerate() {
             let mut of_group = experiment.parameters.iter().filter(|parameter| group(parameter) == index).peekable();
             if of_group.peek().is_some() {
@@ -47,13 +49,49 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
     });
 }
 
+/// Ready-made situations by name, beside those that an experiment declares as a parameter.
+fn presets(ui: &mut Ui, model: &mut Model, experiment: &str) {
+    let list = presets::of(experiment);
+    if list.is_empty() {
+        return;
+    }
+    let language = model.language();
+    let current = list.iter().find(|preset| preset.is_set(&model.scenario));
+    let shown = current.map_or(model.text(Text::PresetNone).into(), |preset| language.phrase(preset.name));
+    let mut chosen = None;
+    ui.horizontal(|ui| {
+        let label = ui.label(model.text(Text::Preset));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let combo = ComboBox::from_id_salt("presets").width(150.0).selected_text(shown.as_ref()).truncate();
+            let response = combo.show_ui(ui, |ui| {
+                for preset in list {
+                    let here = current.is_some_and(|current| current.name == preset.name);
+                    if ui.selectable_label(here, language.phrase(preset.name)).clicked() {
+                        chosen = Some(preset);
+                    }
+                }
+            });
+            response.response.labelled_by(label.id);
+        });
+    });
+    if let Some(preset) = chosen {
+        match preset.scenario(&model.scenario) {
+            Ok(scenario) => model.run(scenario),
+            Err(refusal) => model.complain(refusal.to_string()),
+        }
+    }
+    ui.add_space(2.0);
+}
+
 /// A system of a file's own has no declared parameters: the file is shown.
 fn free(ui: &mut Ui, model: &Model) {
     let colours = model.preferences.theme.colours();
     section(ui, &colours, model.text(Text::OwnSystem));
     quiet(ui, &colours, model.text(Text::OwnSystemNote));
-    ScrollArea::both().auto_shrink([false, false]).show(ui, |ui| {
-        ui.add(egui::Label::new(RichText::new(model.scenario.to_toml()).monospace().small()).extend());
+    ui.add_space(6.0);
+    ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+        ui.set_max_width(ui.available_width() - 8.0);
+        ui.add(egui::Label::new(RichText::new(model.scenario.to_toml()).monospace().small()).wrap());
     });
 }
 

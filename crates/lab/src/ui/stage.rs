@@ -3,13 +3,10 @@
 use corpuscle_render::{Projection, Rectangle, View, navigate};
 use corpuscle_scene::Camera;
 use egui::{
-    Align2, Color32, FontId, Painter, PointerButton, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, UiBuilder, Vec2, pos2,
-    vec2,
+    Align2, Color32, FontId, Painter, PointerButton, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, Vec2, pos2, vec2,
 };
 
-use super::icons::Icon;
-use super::widgets::icon_button;
-use super::{Canvas, Easel, hints, legend};
+use super::{Canvas, Easel, hands, hints, legend, toolbar};
 use crate::command::Command;
 use crate::language::Text;
 use crate::model::Model;
@@ -17,16 +14,16 @@ use crate::number::{significant, with_error};
 use crate::runner::Snapshot;
 use crate::tools::{Tool, pick, probe, state_of};
 
-/// Height of the strip above the stage, and width of the tools in it, in points.
+/// Height of the strip above the stage, in points.
 const STRIP: f32 = 40.0;
-const TOOLS: f32 = 5.0 * 34.0 + 8.0;
 /// A pointer that misses a body by so many points still means it.
-const REACH: f64 = 4.0;
+pub(super) const REACH: f64 = 4.0;
 
 pub(super) fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot, easel: &mut dyn Easel) {
     let whole = ui.available_rect_before_wrap();
     let (strip, whole) = whole.split_top_bottom_at_y(whole.top() + STRIP);
-    let (stage, band) = whole.split_top_bottom_at_y(whole.bottom() - legend::HEIGHT);
+    let (middle, band) = whole.split_top_bottom_at_y(whole.bottom() - legend::HEIGHT);
+    let (column, stage) = toolbar::beside(middle);
     let response = ui.allocate_rect(stage, Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, model.text(Text::Stage)));
 
@@ -41,6 +38,7 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot, easel: &mut 
     let projection = projection_of(stage, camera);
     pointer(ui, model, seen, &response, &projection, camera);
     let painter = ui.painter().with_clip_rect(stage);
+    hands::preview(&painter, model, seen, &projection, &response);
     followed(&painter, model, seen, &projection, stage);
     ruler(&painter, model, &projection, stage);
     probe_reading(&painter, model, seen, &projection, stage);
@@ -48,9 +46,9 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot, easel: &mut 
         hovered(ui, model, seen, &response, &projection, stage);
     }
     caption(ui, model, seen, strip);
-    colours(ui, model, seen, band);
-    legend::paint(ui.painter(), band, &seen.scene, &projection, model.preferences.theme, model.language());
-    tools(ui, model, seen, strip);
+    legend::show(ui, model, seen, band, &projection);
+    toolbar::show(ui, model, seen, column);
+    toolbar::settings(ui, model, seen, stage);
     stopwatch(&painter, model, seen, stage);
     hints::show(ui, model, stage);
 }
@@ -68,12 +66,12 @@ fn projection_of(stage: Rect, camera: Camera) -> Projection {
 }
 
 /// A point of the window in the projection's own coordinates.
-fn inside(stage: Rect, at: Pos2) -> [f64; 2] {
+pub(super) fn inside(stage: Rect, at: Pos2) -> [f64; 2] {
     let at = at - stage.min;
     [f64::from(at.x), f64::from(at.y)]
 }
 
-fn outside(stage: Rect, at: [f64; 2]) -> Pos2 {
+pub(super) fn outside(stage: Rect, at: [f64; 2]) -> Pos2 {
     stage.min + vec2(at[0] as f32, at[1] as f32)
 }
 
@@ -86,6 +84,9 @@ fn pointer(ui: &Ui, model: &mut Model, seen: &Snapshot, response: &Response, pro
         if factor != 1.0 {
             model.camera = Some(navigate::zoomed(camera, projection, inside(stage, at), factor));
         }
+    }
+    if model.tool.touches() {
+        hands::pointer(ui, model, seen, response, projection);
     }
     let way = response.drag_delta();
     let moves =
@@ -102,16 +103,17 @@ fn pointer(ui: &Ui, model: &mut Model, seen: &Snapshot, response: &Response, pro
         match model.tool {
             Tool::Ruler => model.ruler = Some([from, place]),
             Tool::Probe if !projection.is_spatial() => model.probe = Some([[from[0], from[1]], [place[0], place[1]]]),
-            Tool::Hand | Tool::Probe => {}
+            _ => {}
         }
     }
-    if response.double_clicked() {
+    if response.double_clicked() && !model.tool.touches() {
         model.obey(Command::Fit, seen);
     } else if response.clicked() {
         match model.tool {
             Tool::Hand => model.followed = pick(&seen.scene, projection, inside(stage, at), REACH),
             Tool::Ruler => model.ruler = None,
             Tool::Probe => model.probe = None,
+            _ => {}
         }
     }
 }
@@ -150,7 +152,8 @@ fn values(model: &Model, seen: &Snapshot, index: usize) -> String {
 
 fn hovered(ui: &Ui, model: &Model, seen: &Snapshot, response: &Response, projection: &Projection, stage: Rect) {
     let Some(at) = response.hover_pos() else { return };
-    if model.tool != Tool::Hand {
+    if matches!(model.tool, Tool::Ruler | Tool::Probe | Tool::Partition | Tool::Heat | Tool::Piston) {
+        ui.ctx().set_cursor_icon(egui::CursorIcon::Crosshair);
         return;
     }
     if let Some(index) = pick(&seen.scene, projection, inside(stage, at), REACH) {
@@ -201,6 +204,9 @@ fn probe_reading(painter: &Painter, model: &Model, seen: &Snapshot, projection: 
         vec![format!("N = {}", reading.bodies), format!("{} n = {}", model.text(Text::Density), significant(reading.density, 4))];
     if let Some((mean, error)) = reading.temperature {
         lines.push(format!("k_B T/m = {}", with_error(mean, Some(error))));
+        if let Some((mean, error)) = reading.pressure {
+            lines.push(format!("{} = {}", model.text(Text::KineticPressure), with_error(mean, Some(error))));
+        }
         lines.push(format!(
             "{} = ({}, {})",
             model.text(Text::Flow),
@@ -218,7 +224,7 @@ fn probe_reading(painter: &Painter, model: &Model, seen: &Snapshot, projection: 
 }
 
 /// Words on a ground of their own, so that they can be read over anything.
-fn card(painter: &Painter, model: &Model, at: Pos2, align: Align2, words: &str) {
+pub(super) fn card(painter: &Painter, model: &Model, at: Pos2, align: Align2, words: &str) {
     let colours = model.preferences.theme.colours();
     let text = painter.layout_no_wrap(words.to_owned(), FontId::proportional(12.5), colours.ink);
     let size = text.size() + vec2(16.0, 10.0);
@@ -230,47 +236,17 @@ fn card(painter: &Painter, model: &Model, at: Pos2, align: Align2, words: &str) 
     painter.galley(rect.min + vec2(8.0, 5.0), text, colours.ink);
 }
 
-/// What the experiment says of this moment, above the stage.
+/// What the experiment says of this moment, above the stage. Lines break between its parts, not within.
 fn caption(ui: &Ui, model: &Model, seen: &Snapshot, strip: Rect) {
     let colours = model.preferences.theme.colours();
-    let room = strip.width() - TOOLS - 24.0;
-    let mut job = egui::text::LayoutJob::simple(seen.scene.caption.clone(), FontId::proportional(12.5), colours.quiet, room);
+    let parts = seen.scene.caption.split("  ").map(|part| part.trim_matches([' ', '·'])).filter(|part| !part.is_empty());
+    let parts = parts.map(|part| model.language().phrase(part).replace(' ', "\u{a0}"));
+    let words = parts.collect::<Vec<_>>().join("  ·  ");
+    let mut job = egui::text::LayoutJob::simple(words, FontId::proportional(12.5), colours.quiet, strip.width() - 28.0);
     job.wrap.max_rows = 2;
     let galley = ui.painter().layout_job(job);
     let at = pos2(strip.left() + 14.0, strip.center().y - 0.5 * galley.size().y);
     ui.painter().galley(at, galley, colours.quiet);
-}
-
-/// A click on the legend colours the bodies otherwise.
-fn colours(ui: &Ui, model: &mut Model, seen: &Snapshot, band: Rect) {
-    let left = Rect::from_min_max(band.min, pos2(band.center().x, band.bottom()));
-    let response = ui.interact(left, ui.scope_id().with("legend"), Sense::click());
-    let name = format!("{}: {}", model.text(Text::DoNextPaint), model.text(model.paint.text()));
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
-    if response.on_hover_text(format!("{name}  ({})", Command::NextPaint.key())).clicked() {
-        model.obey(Command::NextPaint, seen);
-    }
-}
-
-/// The tools, at the right end of the strip above the stage.
-fn tools(ui: &mut Ui, model: &mut Model, seen: &Snapshot, strip: Rect) {
-    let rect = Rect::from_min_max(pos2(strip.right() - TOOLS, strip.top() + 4.0), strip.right_bottom());
-    ui.scope_builder(UiBuilder::new().max_rect(rect).layout(egui::Layout::left_to_right(egui::Align::Min)), |ui| {
-        ui.spacing_mut().item_spacing.x = 4.0;
-        for (tool, icon) in Tool::ALL.into_iter().zip([Icon::Move, Icon::Ruler, Icon::Probe]) {
-            let key = Command::NextTool.key();
-            if icon_button(ui, icon, model.text(tool.text()), key, model.tool == tool).clicked() {
-                model.tool = tool;
-            }
-        }
-        let watch = model.stopwatch.reading(seen.time).is_some();
-        if icon_button(ui, Icon::Watch, model.text(Text::DoStopwatch), Command::Stopwatch.key(), watch).clicked() {
-            model.obey(Command::Stopwatch, seen);
-        }
-        if icon_button(ui, Icon::Fit, model.text(Text::DoFit), Command::Fit.key(), false).clicked() {
-            model.obey(Command::Fit, seen);
-        }
-    });
 }
 
 fn stopwatch(painter: &Painter, model: &Model, seen: &Snapshot, stage: Rect) {

@@ -2,6 +2,7 @@
 
 use egui::{Align, Align2, DragValue, FontId, Layout, Rect, RichText, Sense, Slider, Stroke, Ui, pos2, vec2};
 
+use super::hands;
 use super::icons::Icon;
 use super::widgets::{command_button, icon_button, sized_icon_button};
 use crate::command::Command;
@@ -23,6 +24,7 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
                 model.obey(command, seen);
             }
         }
+        disturb(ui, model, seen);
         let (icon, text) = if seen.playing { (Icon::Pause, Text::Pause) } else { (Icon::Play, Text::Play) };
         if sized_icon_button(ui, icon, model.text(text), Command::TogglePlay.key(), true, vec2(52.0, 32.0)).clicked() {
             model.obey(Command::TogglePlay, seen);
@@ -49,6 +51,22 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
         go_to(ui, model, seen);
         timeline(ui, model, seen);
     });
+}
+
+/// Loschmidt's question, and how strongly it is asked.
+fn disturb(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
+    if command_button(ui, model, Icon::Fork, Command::Disturb, Text::DoDisturb) {
+        model.obey(Command::Disturb, seen);
+    }
+    let strength = model.tools.disturbance;
+    let field = DragValue::new(&mut model.tools.disturbance)
+        .range(1e-15..=1.0)
+        .speed(0.02 * strength)
+        .prefix("ε ")
+        .custom_formatter(|value, _| significant(value, 2))
+        .custom_parser(|text| text.trim_start_matches('ε').trim().parse().ok());
+    let field = ui.add(field).on_hover_text(model.text(Text::DisturbanceHelp));
+    field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, model.text(Text::Disturbance)));
 }
 
 fn speed(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
@@ -153,6 +171,7 @@ fn timeline(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
         let x = x_of(moment);
         painter.line_segment([pos2(x, line.top() - 7.0), pos2(x, line.bottom() + 7.0)], Stroke::new(2.0, colours.ink));
     }
+    let deed = hands::marks(ui, model, seen, line, x_of);
     let handle = pos2(x_of(seen.time), line.center().y);
     painter.circle(handle, 6.0, colours.accent, Stroke::new(2.0, colours.panel));
     let text = significant(end, 4);
@@ -162,6 +181,5 @@ fn timeline(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
         let part = f64::from(((at.x - line.left()) / line.width()).clamp(0.0, 1.0));
         model.order(Order::GoTo(near.unwrap_or(seen.start + part * length)));
     }
-    let tip = model.text(Text::TimelineHelp);
-    response.on_hover_text(tip);
+    response.on_hover_text(deed.as_deref().unwrap_or(model.text(Text::TimelineHelp)));
 }

@@ -1,6 +1,6 @@
 //! Discs in the plane and spheres in space.
 
-use corpuscle_scene::{Body, Colour, Colouring, Palette, Scene, viridis};
+use corpuscle_scene::{Body, Colour, Colouring, Scene, viridis};
 
 use super::{SPACE, Space};
 use crate::RenderError;
@@ -11,6 +11,10 @@ const BODY: &str = include_str!("../shaders/body.glsl");
 
 /// Bodies are compared with what was uploaded, and uploaded again, in runs of this many.
 const RUN: usize = 256;
+/// Opacity of an image in a periodic box.
+const FAINT: f32 = 0.2;
+/// Bodies beyond this number are drawn without images, which cost as much again as the bodies, each of eight.
+const MOST_IMAGED: usize = 20_000;
 
 /// A body as the shader takes it: 52 bytes.
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
@@ -80,9 +84,29 @@ impl Bodies {
         };
         program.set("u_field", scene.field.map(|g| g as f32));
         program.set("u_least_radius", scene.least_radius);
-        colour(program, &scene.colouring, space.palette);
-        space.enter(program);
+        colour(program, &scene.colouring, space);
+        if space.projection.is_spatial() {
+            space.enter(program);
+        } else {
+            self.images(space, scene);
+            self.disc.set("u_opacity", 1.0f32);
+            space.enter(program);
+        }
         self.buffer.draw();
+    }
+
+    /// The neighbouring images of a periodic box, in the plane: the same bodies once more for each, nothing is sent.
+    fn images(&self, space: &Space, scene: &Scene) {
+        if scene.bodies.len() > MOST_IMAGED {
+            return;
+        }
+        self.disc.set("u_opacity", FAINT);
+        let turns = |axis: usize| if scene.period[axis] > 0.0 { -1..=1 } else { 0..=0 };
+        for (x, y) in turns(0).flat_map(|x| turns(1).map(move |y| (x, y))).filter(|&image| image != (0, 0)) {
+            let shift = [f64::from(x) * scene.period[0], f64::from(y) * scene.period[1], 0.0];
+            space.enter_shifted(&self.disc, shift);
+            self.buffer.draw();
+        }
     }
 
     fn light(&self, space: &Space) {
@@ -152,22 +176,28 @@ fn displacement_is_fine(space: &Space, scene: &Scene) -> bool {
 }
 
 /// Sets the uniforms from which `body.glsl` takes its colours.
-fn colour(program: &Program, colouring: &Colouring, palette: Palette) {
+fn colour(program: &Program, colouring: &Colouring, space: &Space) {
     let plain = |colour| {
-        let [r, g, b, _] = palette.rgba(colour);
+        let [r, g, b, _] = space.palette.rgba(colour);
         [r, g, b]
     };
-    let (map, range): (Vec<[f32; 3]>, Option<[f64; 2]>) = match colouring {
+    let (map, range, reading): (Vec<[f32; 3]>, Option<[f64; 2]>, i32) = match colouring {
         // One colour for all: whatever the shade is, its remainder is 0.
-        Colouring::Uniform(colour) => (vec![plain(*colour)], None),
-        Colouring::Species(_) => ((0..8).map(|index| plain(Colour::Accent(index))).collect(), None),
-        Colouring::Speed { most, .. } => (viridis_knots(), Some([0.0, *most])),
-        Colouring::Value { least, most, .. } => (viridis_knots(), Some([*least, *most])),
+        Colouring::Uniform(colour) => (vec![plain(*colour)], None, 0),
+        Colouring::Species(_) => ((0..8).map(|index| plain(Colour::Accent(index))).collect(), None, 0),
+        Colouring::Speed { most, .. } => (viridis_knots(), Some([0.0, *most]), 1),
+        Colouring::Energy { most } => (viridis_knots(), Some([0.0, *most]), 2),
+        Colouring::Height { least, most, .. } => (viridis_knots(), Some([*least, *most]), 3),
+        Colouring::Value { least, most, .. } => (viridis_knots(), Some([*least, *most]), 0),
     };
     program.set("u_map", &map[..]);
     program.set("u_colours", map.len() as i32);
-    program.set("u_by_speed", i32::from(matches!(colouring, Colouring::Speed { .. })));
+    program.set("u_reading", reading);
     program.set("u_continuous", i32::from(range.is_some()));
+    if let Colouring::Height { axis, .. } = colouring {
+        let up: [f32; 3] = std::array::from_fn(|k| f32::from(u8::from(k == *axis)));
+        program.set("u_up", up);
+    }
     if let Some([least, most]) = range {
         let per_extent = if most > least { 1.0 / (most - least) } else { 0.0 };
         program.set("u_range", [least as f32, per_extent as f32]);

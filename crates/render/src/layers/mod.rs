@@ -38,8 +38,14 @@ impl Space {
 
     /// Sets the uniforms of `space.glsl`.
     fn enter(&self, program: &Program) {
+        self.enter_shifted(program, [0.0; 3]);
+    }
+
+    /// The same, for everything drawn so far away from where it is.
+    fn enter_shifted(&self, program: &Program, shift: [f64; 3]) {
         program.bind();
-        let [high, low] = pairs(self.projection.centre);
+        let centre: [f64; 3] = std::array::from_fn(|k| self.projection.centre[k] - shift[k]);
+        let [high, low] = pairs(centre);
         program.set("u_centre_high", high);
         program.set("u_centre_low", low);
         // OpenGL takes columns.

@@ -24,6 +24,8 @@ impl Legend {
             Colouring::Species(names) if names.is_empty() => None,
             Colouring::Species(names) => Some(Self::Species(names.clone())),
             Colouring::Speed { most, unit } => Some(Self::scale("speed", unit, 0.0, *most)),
+            Colouring::Energy { most } => Some(Self::scale("kinetic energy", "", 0.0, *most)),
+            Colouring::Height { least, most, .. } => Some(Self::scale("height", "", *least, *most)),
             Colouring::Value { name, unit, least, most } => Some(Self::scale(name, unit, *least, *most)),
         }
     }

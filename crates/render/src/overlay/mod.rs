@@ -95,6 +95,10 @@ impl Layout {
         for label in &scene.labels {
             if let Some([x, y]) = projection.pixel(label.at) {
                 let style = m.small();
+                // On a ground of its own: bodies pass below it.
+                let size = [sheet.typeface.width(&label.text, style) + m.points(10.0), m.points(19.0)];
+                let (left, top) = ((x - 0.5 * size[0]).round(), (y - 0.5 * size[1]).round());
+                Self::veil(sheet, Rectangle { left, top, width: size[0].round(), height: size[1].round() }, view.palette);
                 sheet.text(&label.text, style, [x, y + 0.36 * style.size], Align::Middle, view.palette.rgba(label.colour));
             }
         }

@@ -6,22 +6,31 @@ layout(location = 2) in vec3 a_velocity;
 layout(location = 3) in vec2 a_form;        // radius, shade
 
 uniform vec3 u_field;           // acceleration
-uniform int u_by_speed;         // the shade is the speed
+uniform int u_reading;          // what is read: the shade 0, the speed 1, the kinetic energy of the mass in the shade 2, a height 3
+uniform vec3 u_up;              // direction of the height
 uniform int u_continuous;       // the shade is a place on the colour map; otherwise the number of a colour
 uniform vec2 u_range;           // least, and one over the extent
 uniform vec3 u_map[11];
 uniform int u_colours;          // how many of them are in use
 
-// x(t) = x + v (t - t_i) + g (t - t_i)^2 / 2, relative to the camera's centre.
-vec3 place_now() {
+// x(t) - x(t_i) = v (t - t_i) + g (t - t_i)^2 / 2
+vec3 displacement_now() {
     float dt = elapsed_since(vec2(a_high.w, a_low.w));
-    return from_centre(a_high.xyz, a_low.xyz) + (a_velocity + 0.5 * dt * u_field) * dt;
+    return (a_velocity + 0.5 * dt * u_field) * dt;
+}
+
+// Relative to the camera's centre.
+vec3 place_now() {
+    return from_centre(a_high.xyz, a_low.xyz) + displacement_now();
 }
 
 vec3 colour_now() {
     float shade = a_form.y;
-    if (u_by_speed == 1) {
-        shade = length(a_velocity + elapsed_since(vec2(a_high.w, a_low.w)) * u_field);
+    if (u_reading == 3) {
+        shade = dot(a_high.xyz + displacement_now(), u_up);
+    } else if (u_reading > 0) {
+        vec3 v = a_velocity + elapsed_since(vec2(a_high.w, a_low.w)) * u_field;
+        shade = u_reading == 1 ? length(v) : 0.5 * shade * dot(v, v);
     }
     if (u_continuous == 0) {
         return u_map[int(max(shade, 0.0) + 0.5) % u_colours];

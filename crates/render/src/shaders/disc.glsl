@@ -5,11 +5,12 @@ varying vec2 v_place;               // pixels from the centre
 
 #ifdef VERTEX
 uniform float u_scale;              // pixels in the simulation's length
+uniform float u_opacity;            // of images in a periodic box less than 1
 
 void main() {
     vec2 size = visible_size(a_form.x * u_scale);
     vec4 clip = u_projection * vec4(eye_from_centre(place_now()), 1.0);
-    v_colour = vec4(colour_now(), size.y);
+    v_colour = vec4(colour_now(), u_opacity * size.y);
     v_radius = size.x;
     v_place = (2.0 * corner_of_quad() - 1.0) * (size.x + 1.0);
     gl_Position = clip + vec4(2.0 * v_place / u_frame, 0.0, 0.0);

@@ -10,6 +10,7 @@ use corpuscle_observe::{Curves, Drift, MeanSquaredDisplacement, VelocityAutocorr
 
 use super::Set;
 use crate::gas::{self, Species};
+use crate::tally::Tally;
 
 /// Index of the heavy particle: it is placed first.
 pub(super) const TRACER: usize = 0;
@@ -54,12 +55,14 @@ pub(super) struct Bath<const D: usize> {
     velocity: VelocityAutocorrelation<D>,
     /// Physical time of the engine at which the measurement started.
     started: f64,
+    /// Collisions of each particle, where this bath is on show.
+    pub(super) tally: Tally,
 }
 
 resume!(Bath<const D> {
     values: [engine, kicks, path, speed_squares, energy, momentum],
     parts: [displacement, velocity],
-    set_up: [started],
+    set_up: [started, tally],
 });
 
 impl<const D: usize> Bath<D> {
@@ -92,6 +95,7 @@ impl<const D: usize> Bath<D> {
             displacement: MeanSquaredDisplacement::new(set.interval),
             velocity: VelocityAutocorrelation::new(set.interval, set.longest_lag),
             started,
+            tally: Tally::of(if stream == 0 { set.particles + 1 } else { 0 }),
         };
         bath.sample(set);
         Ok(bath)
@@ -112,7 +116,7 @@ impl<const D: usize> Bath<D> {
     /// # Errors
     /// [`Failure`] of the engine.
     pub(super) fn advance(&mut self, time: f64) -> Result<(), Failure> {
-        self.engine.advance(self.started + time, &mut self.kicks)
+        self.engine.advance(self.started + time, &mut (&mut self.kicks, &mut self.tally))
     }
 
     /// Notes the tracer now.

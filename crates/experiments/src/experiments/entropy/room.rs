@@ -7,6 +7,7 @@ use corpuscle_observe::entropy::{Cells, configurational_entropy};
 
 use super::Set;
 use crate::gas::{self, Species};
+use crate::tally::Tally;
 
 /// What the partition separates at the start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,9 +41,11 @@ pub(super) struct Room<const D: usize> {
     cells: Cells<D>,
     /// Physical time of the engine at which the partition opened.
     opened: f64,
+    /// Collisions of each particle, where this room is on show.
+    pub(super) tally: Tally,
 }
 
-resume!(Room<const D> { values: [engine, samples], set_up: [process, species, initial_energy, cells, opened] });
+resume!(Room<const D> { values: [engine, samples], set_up: [process, species, initial_energy, cells, opened, tally] });
 
 impl<const D: usize> Room<D> {
     /// Fills the room, lets it come to equilibrium behind the closed partition, and opens that.
@@ -83,7 +86,8 @@ impl<const D: usize> Room<D> {
         engine.set_boundary(open)?;
         let cells = set.cells();
         let initial_energy = engine.kinetic_energy();
-        let mut room = Self { process, engine, species, samples: vec![], initial_energy, cells, opened: wait };
+        let tally = Tally::default();
+        let mut room = Self { process, engine, species, samples: vec![], initial_energy, cells, opened: wait, tally };
         room.sample();
         Ok(room)
     }
@@ -98,7 +102,7 @@ impl<const D: usize> Room<D> {
     /// # Errors
     /// [`Failure`] of the engine.
     pub(super) fn advance(&mut self, time: f64) -> Result<(), Failure> {
-        self.engine.advance(self.opened + time, &mut ())
+        self.engine.advance(self.opened + time, &mut self.tally)
     }
 
     /// Takes a sample now.

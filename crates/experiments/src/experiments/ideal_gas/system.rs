@@ -11,6 +11,7 @@ use corpuscle_observe::theory::collision_rate;
 use corpuscle_observe::{Drift, Schedule};
 
 use crate::gas::{self, Species};
+use crate::tally::Tally;
 
 /// A state of the gas: what an experimenter sets.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -189,11 +190,13 @@ pub(super) struct System<const D: usize> {
     meter: Totals<D>,
     keep: bool,
     snapshot: Particles<D>,
+    /// Collisions of each particle, where this system is on show.
+    pub(super) tally: Tally,
 }
 
 resume!(System<const D> {
     values: [engine, speeds, energy, readings, action, samples, schedule, meter],
-    set_up: [state, pace, keep, snapshot],
+    set_up: [state, pace, keep, snapshot, tally],
 });
 
 impl<const D: usize> System<D> {
@@ -212,6 +215,7 @@ impl<const D: usize> System<D> {
             meter: Totals::ZERO,
             keep,
             snapshot: Particles::new(),
+            tally: Tally::default(),
         })
     }
 
@@ -220,12 +224,12 @@ impl<const D: usize> System<D> {
         loop {
             let number = self.schedule.count();
             let Some(time) = self.schedule.due(to) else { break };
-            self.engine.advance(time * self.pace.clock, &mut self.meter)?;
+            self.engine.advance(time * self.pace.clock, &mut (&mut self.meter, &mut self.tally))?;
             if number >= self.pace.warm_up {
                 self.read(number - self.pace.warm_up);
             }
         }
-        self.engine.advance(to * self.pace.clock, &mut self.meter)
+        self.engine.advance(to * self.pace.clock, &mut (&mut self.meter, &mut self.tally))
     }
 
     fn read(&mut self, sample: u64) {

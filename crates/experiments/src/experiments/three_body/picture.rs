@@ -1,6 +1,6 @@
 //! What there is to see: stars with their trails, dust, and the numbers of the moment.
 
-use corpuscle_scene::{Body, Camera, Colour, Colouring, Scene, TrailPoint};
+use corpuscle_scene::{Body, Camera, Colour, Colouring, Scene, Shade, TrailPoint};
 
 use super::ThreeBody;
 use super::fate::Fate;
@@ -23,13 +23,16 @@ impl ThreeBody {
         let masses = start.masses();
         let heaviest = masses.iter().fold(0.0f64, |most, &mass| most.max(mass));
         let visible = 3 + start.grains;
+        scene.shaded = if scene.wanted == Shade::Collisions { Shade::Own } else { scene.wanted };
+        let by_mass = scene.shaded == Shade::Mass;
+        let shade = |i: usize| if by_mass { start.particles.mass[i] } else { i.min(3) as f64 };
         scene.bodies.extend((0..visible).map(|i| Body {
             position: frame.position[i].to_three(),
             velocity: frame.velocity[i].to_three(),
             time: frame.time,
             // Volume as mass, but no star so small that it is lost.
             radius: if i < 3 { 0.035 * half * (masses[i] / heaviest).cbrt().max(0.4) } else { 0.0075 * half },
-            shade: i.min(3) as f64,
+            shade: shade(i),
         }));
         let mut names: Vec<String> = masses.iter().map(|mass| format!("star, m = {mass}")).collect();
         if start.grains > 0 {

@@ -1,0 +1,103 @@
+//! Situations worth a look, by name: sets of parameters of the experiments.
+
+use corpuscle_io::{Refusal, Scenario};
+
+/// A named set of parameters; those it does not name are at their defaults.
+pub struct Preset {
+    /// Its name.
+    pub name: &'static str,
+    /// Parameters and their values, as one would write them on the command line.
+    pub values: &'static [(&'static str, &'static str)],
+}
+
+const fn preset(name: &'static str, values: &'static [(&'static str, &'static str)]) -> Preset {
+    Preset { name, values }
+}
+
+/// What each experiment offers, the defaults first. Where an experiment has a parameter `preset` of its own there is no more.
+const PRESETS: &[(&str, &[Preset])] = &[
+    (
+        "brownian",
+        &[
+            preset("dilute bath, heavy particle", &[]),
+            preset("barely heavier than the bath", &[("mass", "5")]),
+            preset("very heavy: long memory", &[("mass", "200")]),
+            preset("large sphere in a crowd", &[("packing_fraction", "0.3"), ("radius", "5")]),
+            preset("locked in between walls", &[("boundary", "walls")]),
+            preset("in space", &[("dimension", "3")]),
+        ],
+    ),
+    (
+        "entropy",
+        &[
+            preset("free expansion", &[]),
+            preset("mixing of two gases", &[("process", "mixing")]),
+            preset("leak through a hole", &[("hole_width", "3")]),
+            preset("four particles: will they all come back?", &[("particles", "4"), ("cells", "2")]),
+            preset("without a reversal", &[("reverse_at", "0")]),
+        ],
+    ),
+    (
+        "ideal-gas",
+        &[
+            preset("nearly ideal", &[]),
+            preset("denser: the law fails", &[("packing_fraction", "0.1")]),
+            preset("twice as hot", &[("temperature", "2")]),
+            preset("heavy molecules", &[("mass", "20")]),
+            preset("in space", &[("dimension", "3")]),
+        ],
+    ),
+];
+
+/// The presets of an experiment.
+pub fn of(experiment: &str) -> &'static [Preset] {
+    PRESETS.iter().find(|(name, _)| *name == experiment).map_or(&[], |(_, presets)| presets)
+}
+
+impl Preset {
+    /// A scenario with these values, and the seed of another.
+    ///
+    /// # Errors
+    /// [`Refusal`] when the experiment does not take a value.
+    pub fn scenario(&self, like: &Scenario) -> Result<Scenario, Refusal> {
+        let corpuscle_io::scenario::Subject::Experiment(experiment) = like.subject else { return Ok(like.clone()) };
+        let mut scenario = Scenario::new(experiment);
+        scenario.settings.seed = like.settings.seed;
+        for (key, value) in self.values {
+            scenario.set(key, value)?;
+        }
+        Ok(scenario)
+    }
+
+    /// Whether a scenario has these values and no others.
+    pub fn is_set(&self, scenario: &Scenario) -> bool {
+        let given = scenario.parameters().filter(|(_, _, given)| *given);
+        let mut count = 0;
+        let all = given.map(|(parameter, value, _)| (parameter.name, value.to_string())).all(|(name, value)| {
+            count += 1;
+            self.values.iter().any(|(key, wanted)| *key == name && *wanted == value)
+        });
+        all && count == self.values.len()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use corpuscle_experiments::find;
+
+    #[test]
+    fn every_preset_starts_and_is_known_again() {
+        for (name, presets) in PRESETS {
+            let blank = Scenario::new(find(name).unwrap());
+            for preset in *presets {
+                let mut scenario = preset.scenario(&blank).unwrap();
+                assert!(preset.is_set(&scenario), "{name}: {}", preset.name);
+                assert_eq!(presets.iter().filter(|other| other.is_set(&scenario)).count(), 1);
+                scenario.set("replicas", "3").unwrap();
+                scenario.start().unwrap();
+                assert!(!preset.is_set(&scenario));
+            }
+        }
+    }
+}
