@@ -14,6 +14,7 @@ mod painter;
 pub mod preferences;
 pub mod presets;
 pub mod previews;
+pub mod rivals;
 pub mod runner;
 mod studio;
 pub mod theme;

@@ -13,6 +13,7 @@ use crate::film::Film;
 use crate::language::{Language, Text};
 use crate::notebook::Notebook;
 use crate::preferences::Preferences;
+use crate::rivals;
 use crate::runner::{Order, Paint, Snapshot};
 use crate::tools::{self, Stopwatch, Tool, Touch};
 
@@ -111,6 +112,8 @@ pub struct Model {
     pub touch: Option<Touch>,
     /// How often velocities have been disturbed: each time otherwise.
     pub disturbances: u64,
+    /// What computes the same beside it.
+    pub beside: Option<String>,
     /// A click on a check has opened its chart: there is a way back.
     pub from_checks: bool,
     /// Ends of the ruler.
@@ -175,6 +178,7 @@ impl Model {
             tools: tools::Settings::default(),
             touch: None,
             disturbances: 0,
+            beside: None,
             from_checks: false,
             ruler: None,
             probe: None,
@@ -367,9 +371,22 @@ impl Model {
         }
     }
 
-    /// Runs the scenario from its start.
+    /// Computes the same another way beside it, or no longer.
+    pub fn set_beside(&mut self, name: Option<&str>) {
+        let rival = name.and_then(|name| rivals::of(&self.scenario).into_iter().find(|rival| rival.name == name));
+        self.beside = rival.as_ref().map(|rival| rival.name.clone());
+        self.order(Order::Beside(rival.map(|rival| (rival.name, Box::new(rival.scenario)))));
+        if self.beside.is_some() {
+            self.large_chart = None;
+        }
+    }
+
+    /// Runs the scenario from its start, and what is beside it as well.
     pub fn restart(&mut self) {
         self.order(Order::Start(Box::new(self.scenario.clone())));
+        if let Some(name) = self.beside.take() {
+            self.set_beside(Some(&name));
+        }
         self.moments.clear();
         self.stopwatch = Stopwatch::Off;
     }
@@ -378,6 +395,7 @@ impl Model {
     pub fn run(&mut self, scenario: Scenario) {
         if scenario.name() != self.scenario.name() {
             self.notebook = Notebook::default();
+            self.beside = None;
             self.large_chart = None;
         }
         self.preferences.experiment = match scenario.subject {

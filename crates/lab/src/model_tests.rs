@@ -15,6 +15,7 @@ fn orders(model: &mut Model) -> String {
         Order::Step => "step".into(),
         Order::Paint(paint) => format!("{paint:?}"),
         Order::Arrows(on) => format!("arrows {on}"),
+        Order::Beside(rival) => format!("beside {:?}", rival.as_ref().map(|(name, _)| name)),
         Order::NextEvent => "next".into(),
         Order::Act(action) => format!("{action:?}"),
         Order::GoTo(time) => format!("to {time}"),

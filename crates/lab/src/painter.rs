@@ -55,7 +55,7 @@ impl Painter {
 
     /// Forgets the gallery's pictures while they are not shown.
     pub(crate) fn keep_stage_only(&mut self) {
-        self.canvases.retain(|canvas, _| *canvas == Canvas::Stage);
+        self.canvases.retain(|canvas, _| !matches!(canvas, Canvas::Card(_)));
     }
 }
 

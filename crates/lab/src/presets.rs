@@ -19,11 +19,11 @@ const PRESETS: &[(&str, &[Preset])] = &[
     (
         "brownian",
         &[
-            preset("dilute bath, heavy particle", &[]),
-            preset("barely heavier than the bath", &[("mass", "5")]),
-            preset("very heavy: long memory", &[("mass", "200")]),
-            preset("large sphere in a crowd", &[("packing_fraction", "0.3"), ("radius", "5")]),
-            preset("locked in between walls", &[("boundary", "walls")]),
+            preset("dilute bath", &[]),
+            preset("barely heavier", &[("mass", "5")]),
+            preset("very heavy", &[("mass", "200")]),
+            preset("big in a crowd", &[("packing_fraction", "0.3"), ("radius", "5")]),
+            preset("between walls", &[("boundary", "walls")]),
             preset("in space", &[("dimension", "3")]),
         ],
     ),
@@ -31,17 +31,17 @@ const PRESETS: &[(&str, &[Preset])] = &[
         "entropy",
         &[
             preset("free expansion", &[]),
-            preset("mixing of two gases", &[("process", "mixing")]),
+            preset("mixing of two", &[("process", "mixing")]),
             preset("leak through a hole", &[("hole_width", "3")]),
-            preset("four particles: will they all come back?", &[("particles", "4"), ("cells", "2")]),
-            preset("without a reversal", &[("reverse_at", "0")]),
+            preset("four particles", &[("particles", "4"), ("cells", "2")]),
+            preset("no reversal", &[("reverse_at", "0")]),
         ],
     ),
     (
         "ideal-gas",
         &[
             preset("nearly ideal", &[]),
-            preset("denser: the law fails", &[("packing_fraction", "0.1")]),
+            preset("three times as dense", &[("packing_fraction", "0.03")]),
             preset("twice as hot", &[("temperature", "2")]),
             preset("heavy molecules", &[("mass", "20")]),
             preset("in space", &[("dimension", "3")]),

@@ -1,5 +1,6 @@
 //! The simulation on its own thread: orders go in, snapshots come out, and the window never waits for either.
 
+pub mod beside;
 pub(crate) mod driver;
 mod exchange;
 pub mod paint;
@@ -12,6 +13,7 @@ use std::time::{Duration, Instant};
 
 use corpuscle_io::{Refusal, Scenario};
 
+pub use beside::Side;
 use driver::Driver;
 pub use driver::Order;
 use exchange::{Reader, Writer, exchange};

@@ -161,7 +161,12 @@ pub fn nearest_face(place: [f64; 3], [lower, upper]: [[f64; 3]; 2]) -> (usize, b
 
 /// Where a body is at the scene's time, and how fast: `x + v dt + g dt^2 / 2`, `v + g dt`.
 pub fn state_of(body: &Body, scene: &Scene) -> ([f64; 3], [f64; 3]) {
-    let dt = scene.time - body.time;
+    state_at(body, scene, scene.time)
+}
+
+/// The same at another time of the same flight.
+pub fn state_at(body: &Body, scene: &Scene, time: f64) -> ([f64; 3], [f64; 3]) {
+    let dt = time - body.time;
     let (x, v, g) = (body.position, body.velocity, scene.field);
     (std::array::from_fn(|k| x[k] + (v[k] + 0.5 * g[k] * dt) * dt), std::array::from_fn(|k| v[k] + g[k] * dt))
 }

@@ -41,6 +41,8 @@ pub trait Easel {
 pub enum Canvas {
     /// The stage.
     Stage,
+    /// The same computed another way, beside it.
+    Beside,
     /// A card of the gallery.
     Card(usize),
 }

@@ -189,3 +189,129 @@ fn the_font_has_every_character_of_the_table_and_the_phrases() {
         words.flat_map(str::chars).filter(|&c| !context.fonts_mut(|fonts| fonts.has_glyph(&id, c))).collect();
     assert!(missing.is_empty(), "run scripts/subset-fonts.sh: the fonts lack {missing:?}");
 }
+
+/// A drag with the tool that carries puts the body where the pointer lets go; time goes on afterwards, and the deed is on record.
+#[test]
+fn a_body_is_carried_and_thrown_with_the_pointer() {
+    use corpuscle_experiments::Action;
+    use corpuscle_lab::tools::Tool;
+    let mut harness = window(
+        "ideal-gas",
+        &[("particles", "20"), ("replicas", "3"), ("dense_packings", "[]")],
+        Language::English,
+        [1280.0, 800.0],
+    );
+    harness.run_steps(3);
+    for tool in [Tool::Carry, Tool::Throw] {
+        harness.get_by_label(Language::English.text(tool.text())).click();
+        harness.run_steps(2);
+        assert_eq!(harness.state().model.tool, tool);
+        let stage = harness.get_by_label("Stage").rect();
+        // The picture is square and in the middle of the stage: from the box to the window.
+        let scene = harness.state().runner.snapshot().scene.clone();
+        let [lower, upper] = scene.bounds.unwrap();
+        let side = stage.height().min(stage.width()) / 1.04;
+        let pixel = |place: [f64; 3]| {
+            let part = |k: usize| ((place[k] - lower[k]) / (upper[k] - lower[k]) - 0.5) as f32;
+            stage.center() + egui::vec2(part(0) * side, -part(1) * side)
+        };
+        let from = pixel(scene.bodies[5].position);
+        let to = from + egui::vec2(if from.x > stage.center().x { -60.0 } else { 60.0 }, 0.0);
+        harness.drag_at(from);
+        harness.run_steps(2);
+        harness.hover_at(from + 0.5 * (to - from));
+        harness.run_steps(2);
+        harness.hover_at(to);
+        harness.run_steps(2);
+        harness.drop_at(to);
+        harness.run_steps(2);
+        let wanted = tool;
+        until(&mut harness, "the deed", |window| {
+            window.runner.snapshot().deeds.iter().any(|(_, action)| match action {
+                Action::Place { body, .. } => wanted == Tool::Carry && *body == 5,
+                Action::Throw { body, velocity } => wanted == Tool::Throw && *body == 5 && velocity[0].abs() > 0.0,
+                _ => false,
+            })
+        });
+        assert!(harness.state().runner.snapshot().fault.is_none());
+    }
+    harness.state_mut().model.tab = Tab::Notebook;
+    harness.run_steps(2);
+    assert!(harness.query_all_by_label_contains("carried body 5").next().is_some());
+}
+
+#[test]
+fn a_check_leads_to_its_chart_and_back() {
+    let mut harness = small("brownian");
+    harness.run_steps(2);
+    harness.state().runner.order(Order::GoTo(400.0));
+    until(&mut harness, "checks", |window| {
+        window.runner.snapshot().measured.checks.len() > 1 && window.runner.snapshot().travel.is_none()
+    });
+    press(&mut harness, Key::Num2);
+    let name = "Show its chart: k_B T of the heavy particle";
+    let first = harness.query_all_by_label_contains("Show its chart").next();
+    let Some(first) = first else { panic!("no check leads anywhere, not even {name}") };
+    first.click();
+    harness.run_steps(2);
+    assert_eq!(harness.state().model.tab, Tab::Charts);
+    harness.get_by_label_contains("Back to the checks").click();
+    harness.run_steps(2);
+    assert_eq!(harness.state().model.tab, Tab::Checks);
+}
+
+#[test]
+fn another_integrator_runs_beside() {
+    let mut harness = small("three-body");
+    harness.run_steps(2);
+    harness.state_mut().model.set_beside(Some("yoshida-4"));
+    until(&mut harness, "the other half", |window| {
+        window.runner.snapshot().beside.is_some() && window.runner.snapshot().travel.is_none()
+    });
+    assert_eq!(harness.state().runner.snapshot().measured.charts[0].name, "agreement");
+    press(&mut harness, Key::R);
+    until(&mut harness, "both from the start", |window| {
+        window.runner.snapshot().beside.is_some() && window.runner.snapshot().run > 2
+    });
+}
+
+/// What is asked of the window while the engine has 10^5 particles and more work than it can do is done within two frames; the
+/// frames themselves are short, since nothing in them waits for the engine.
+#[test]
+fn the_window_answers_while_the_engine_is_saturated() {
+    let gas = "engine = 'event'\nduration = 1000.0\n[box]\nlower = [0.0, 0.0]\nupper = [560.0, 560.0]\nfaces = 'periodic'\n\
+               [[species]]\ncount = 100000\nradius = 0.5\n";
+    let scenario = Scenario::parse(REGISTRY, gas, std::path::Path::new("gas.toml")).unwrap();
+    let preferences = Preferences { hints_seen: 9, ..Preferences::default() };
+    let runner = Runner::start(scenario.clone(), || {}).unwrap();
+    runner.order(Order::Play(true));
+    runner.order(Order::Speed(100.0));
+    let state = Window { model: Model::new(REGISTRY, scenario, preferences), runner };
+    let mut harness = Harness::builder()
+        .with_size([1280.0, 800.0])
+        .with_context_setup(|context| {
+            context.set_fonts(theme::fonts());
+            Theme::Dark.apply(context);
+        })
+        .build_ui_state(
+            |ui, window: &mut Window| {
+                window.runner.refresh();
+                ui::show(ui, &mut window.model, window.runner.snapshot(), &Previews::none(), &mut ui::Blank);
+                for order in window.model.take_orders() {
+                    window.runner.order(order);
+                }
+            },
+            state,
+        );
+    until(&mut harness, "the engine to fall behind", |window| window.runner.snapshot().pace < 0.5);
+    let mut slowest = std::time::Duration::ZERO;
+    for (key, tab) in [(Key::Num2, Tab::Checks), (Key::Num3, Tab::Honesty), (Key::Num1, Tab::Charts)].repeat(5) {
+        harness.key_press(key);
+        let began = std::time::Instant::now();
+        harness.run_steps(2);
+        slowest = slowest.max(began.elapsed());
+        assert_eq!(harness.state().model.tab, tab, "not within two frames");
+    }
+    // Two frames of a screen take 33 ms; this machine may be shared, and the engine has a thread of its own on it.
+    assert!(slowest < std::time::Duration::from_millis(500), "two frames took {slowest:?}");
+}

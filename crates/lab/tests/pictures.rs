@@ -1,4 +1,4 @@
-//! The whole window against pictures that somebody has looked at: a quarter of the size, with a tolerance, since drivers differ in
+//! The whole window against pictures that somebody has looked at: made small, with a tolerance, since drivers differ in
 //! the last bit and fonts in a pixel. `CORPUSCLE_REFERENCES=write cargo test -p corpuscle-lab --test pictures` makes them anew.
 
 #![allow(clippy::unwrap_used, clippy::panic)] // in the helpers too: a test that cannot be set up has failed
@@ -12,8 +12,8 @@ use corpuscle_lab::theme::Theme;
 use corpuscle_lab::{Preferences, Studio, StudioView};
 use corpuscle_render::Picture;
 
-/// Pixels on a side that become one.
-const BLOCK: u32 = 4;
+/// Width of a picture that is kept: a quarter of the small window's, a sixth of the large one's.
+const WIDTH: u32 = 320;
 /// Largest mean difference of a channel over the whole picture, of 255. A panel that is missing makes about 10, a text of
 /// another size about 2; another driver's antialiasing stays below a half.
 const TOLERANCE: f64 = 1.0;
@@ -27,11 +27,21 @@ fn scenario(name: &str) -> Scenario {
     scenario
 }
 
-fn window(name: &str, theme: Theme, language: Language) -> Picture {
+/// Both palettes, both languages, both sizes.
+const KINDS: [(Theme, Language, [u32; 2], &str); 4] = [
+    (Theme::Dark, Language::English, SMALL, "dark-english"),
+    (Theme::Light, Language::Chinese, SMALL, "light-chinese"),
+    (Theme::Dark, Language::Chinese, LARGE, "dark-chinese-large"),
+    (Theme::Light, Language::English, LARGE, "light-english-large"),
+];
+const SMALL: [u32; 2] = [1280, 800];
+const LARGE: [u32; 2] = [1920, 1080];
+
+fn window(name: &str, theme: Theme, language: Language, size: [u32; 2]) -> Picture {
     let scenario = scenario(name);
     let mut simulation = scenario.start().unwrap();
     let preferences = Preferences { language, theme, hints_seen: u8::MAX, ..Preferences::default() };
-    let view = StudioView { size: [1280, 800], preferences, ..StudioView::default() };
+    let view = StudioView { size, preferences, ..StudioView::default() };
     let mut studio = Studio::new(REGISTRY, scenario, view).unwrap();
     let (start, end) = (simulation.time(), simulation.end());
     for look in 1..=50 {
@@ -43,13 +53,14 @@ fn window(name: &str, theme: Theme, language: Language) -> Picture {
 
 /// The mean colour of each block.
 fn reduced(picture: &Picture) -> Picture {
-    let (width, height) = (picture.width / BLOCK, picture.height / BLOCK);
+    let side = picture.width / WIDTH;
+    let (width, height) = (picture.width / side, picture.height / side);
     let mut rgba = vec![];
     for y in 0..height {
         for x in 0..width {
-            let block = (0..BLOCK * BLOCK).map(|k| picture.pixel(x * BLOCK + k % BLOCK, y * BLOCK + k / BLOCK).unwrap());
+            let block = (0..side * side).map(|k| picture.pixel(x * side + k % side, y * side + k / side).unwrap());
             let sums = block.fold([0u32; 4], |sums, pixel| std::array::from_fn(|c| sums[c] + u32::from(pixel[c])));
-            rgba.extend(sums.map(|sum| (sum / (BLOCK * BLOCK)) as u8));
+            rgba.extend(sums.map(|sum| (sum / (side * side)) as u8));
         }
     }
     Picture { width, height, rgba }
@@ -77,10 +88,8 @@ fn every_experiment_looks_as_it_did_when_somebody_looked() {
     let write = std::env::var_os("CORPUSCLE_REFERENCES").is_some();
     let mut wrong = vec![];
     for name in ["brownian", "entropy", "ideal-gas", "three-body", "wave"] {
-        for (theme, language, kind) in
-            [(Theme::Dark, Language::English, "dark-english"), (Theme::Light, Language::Chinese, "light-chinese")]
-        {
-            let now = reduced(&window(name, theme, language));
+        for (theme, language, size, kind) in KINDS {
+            let now = reduced(&window(name, theme, language, size));
             let path = folder.join(format!("{name}-{kind}.png"));
             if write {
                 std::fs::create_dir_all(&folder).unwrap();
@@ -99,13 +108,13 @@ fn every_experiment_looks_as_it_did_when_somebody_looked() {
 /// A tolerance that nothing exceeds would be no test.
 #[test]
 fn another_window_is_another_picture() {
-    let wave = reduced(&window("wave", Theme::Dark, Language::English));
+    let wave = reduced(&window("wave", Theme::Dark, Language::English, SMALL));
     for (name, theme, language) in [
         ("entropy", Theme::Dark, Language::English),
         ("wave", Theme::Light, Language::English),
         ("wave", Theme::Dark, Language::Chinese),
     ] {
-        let apart = difference(&wave, &reduced(&window(name, theme, language)));
+        let apart = difference(&wave, &reduced(&window(name, theme, language, SMALL)));
         assert!(apart > TOLERANCE, "{name} {theme:?} {language:?}: only {apart:.2}");
     }
 }

@@ -27,6 +27,7 @@ pub mod window;
 pub use backdrop::Backdrop;
 pub use clip::Clip;
 pub use error::RenderError;
+pub use gl::Cost;
 pub use headless::{Headless, ShadingLanguage};
 pub use picture::Picture;
 pub use projection::{Projection, Rectangle};

@@ -172,9 +172,9 @@ table! {
     Ordinate: "y", "y";
 
     // Stage.
-    PaintOwn: "as the experiment chooses", "按实验设定";
+    PaintOwn: "by experiment", "按实验";
     PaintSpeed: "by speed", "按速率";
-    PaintEnergy: "by kinetic energy", "按动能";
+    PaintEnergy: "by energy", "按动能";
     PaintSpecies: "by species", "按种类";
     PaintCollisions: "by collisions", "按碰撞次数";
     PaintHeight: "by height", "按高度";
@@ -211,6 +211,12 @@ table! {
     ChiSquared: "χ² = {} in {} bins", "χ² = {}，{} 格";
     ChiSquaredHelp: "Sum over the bins with five counts or more of ((measured − theory) / error)²; of independent counts it is expected to be as large as their number, with the standard deviation √(2 × number).",
         "对计数不少于五的各格求和 ((测量 − 理论) / 误差)²；计数相互独立时其期望等于格数，标准差为 √(2 × 格数)。";
+    BesideIt: "Beside it", "并列计算";
+    Alone: "nothing", "无";
+    BesideHelp: "The same system computed another way, from the same start, and how long the two agree.",
+        "同一系统从同一初态用另一种方法计算，并显示两者一致多久。";
+    AgreeUntil: "They agree to within a radius until t = {}", "两者在一个半径之内一致，直到 t = {}";
+    AgreeYet: "They agree: largest distance {}", "两者一致：最大距离 {}";
     Preset: "Preset", "预设";
     PresetNone: "Choose…", "选择…";
 

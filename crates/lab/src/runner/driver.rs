@@ -9,6 +9,7 @@ use std::sync::Arc;
 use corpuscle_experiments::{Action, Simulation};
 use corpuscle_io::{Refusal, Scenario};
 
+use super::beside::Beside;
 use super::paint::Paint;
 use super::sight::Sight;
 use super::snapshot::{Fault, Measured, Snapshot};
@@ -39,6 +40,8 @@ pub enum Order {
     Paint(Paint),
     /// Draw velocities as arrows, or not.
     Arrows(bool),
+    /// Compute the same another way beside it: how that is called, and its scenario; or no longer.
+    Beside(Option<(String, Box<Scenario>)>),
     /// Go to a physical time, back or forth, as fast as the engine can.
     GoTo(f64),
 }
@@ -57,6 +60,8 @@ pub(crate) struct Driver {
     stride: f64,
     /// How the viewer looks at it.
     sight: Sight,
+    /// The same computed another way.
+    beside: Option<Beside>,
     seen: Snapshot,
 }
 
@@ -72,6 +77,7 @@ impl Driver {
             factor: 1.0,
             stride: 0.0,
             sight: Sight::default(),
+            beside: None,
             seen: Snapshot { pace: 1.0, ..Snapshot::default() },
         };
         driver.begin();
@@ -146,7 +152,12 @@ impl Driver {
 
     /// Advances to a time; false when the dynamics broke down.
     fn reach(&mut self, to: f64) -> bool {
-        if let Err(failure) = self.simulation.advance(to) {
+        let own = self.simulation.as_mut();
+        let outcome = match &mut self.beside {
+            Some(beside) => beside.advance(own, to),
+            None => own.advance(to),
+        };
+        if let Err(failure) = outcome {
             self.seen.fault = Some(Fault::Failed(failure.to_string()));
             (self.seen.playing, self.seen.travel) = (false, None);
             return false;
@@ -166,6 +177,7 @@ impl Driver {
                 self.ahead += 1;
                 // It was possible then, so it is possible now.
                 let _ = self.simulation.act(action);
+                self.beside.iter_mut().for_each(|beside| beside.act(action));
                 continue;
             }
             let stop = self.next_deed().map_or(goal, |(time, _)| time.min(goal));
@@ -213,10 +225,35 @@ impl Driver {
             }
             Order::NextEvent => self.next_event(),
             Order::Act(action) => self.act(action),
-            Order::Paint(paint) => self.sight.set_paint(paint),
-            Order::Arrows(on) => self.sight.set_arrows(on),
+            Order::Paint(paint) => self.sights().for_each(|sight| sight.set_paint(paint)),
+            Order::Arrows(on) => self.sights().for_each(|sight| sight.set_arrows(on)),
+            Order::Beside(rival) => self.set_beside(rival),
             Order::GoTo(time) => self.go_to(time),
         }
+    }
+
+    fn sights(&mut self) -> impl Iterator<Item = &mut Sight> {
+        std::iter::once(&mut self.sight).chain(self.beside.iter_mut().map(|beside| &mut beside.sight))
+    }
+
+    /// Two that are to be compared begin together: the run goes once more to where it is.
+    fn set_beside(&mut self, rival: Option<(String, Box<Scenario>)>) {
+        self.beside = None;
+        if let Some((name, scenario)) = rival {
+            match Beside::new(name, *scenario, self.sight.clone()) {
+                Ok(beside) => self.beside = Some(beside),
+                Err(refusal) => {
+                    self.seen.fault = Some(Fault::Unable(refusal.invalid.to_string()));
+                    return;
+                }
+            }
+            let now = self.seen.time;
+            if self.restart() {
+                self.ahead = 0;
+                self.seen.travel = Some((self.seen.start, now));
+            }
+        }
+        self.measure();
     }
 
     fn next_event(&mut self) {
@@ -240,6 +277,7 @@ impl Driver {
         }
         match self.simulation.act(action) {
             Ok(()) => {
+                self.beside.iter_mut().for_each(|beside| beside.act(action));
                 self.deeds.push((self.seen.time, action));
                 self.ahead = self.deeds.len();
                 self.seen.deeds = Arc::new(self.deeds.clone());
@@ -267,6 +305,7 @@ impl Driver {
         match scenario.start() {
             Ok(simulation) => {
                 (self.scenario, self.simulation) = (scenario, simulation);
+                self.beside = None;
                 self.deeds.clear();
                 self.seen.deeds = Arc::default();
                 self.ahead = 0;
@@ -283,6 +322,7 @@ impl Driver {
     fn restart(&mut self) -> bool {
         let Ok(simulation) = self.scenario.start() else { return false };
         self.simulation = simulation;
+        self.beside.iter_mut().for_each(Beside::restart);
         self.begin();
         true
     }
@@ -291,6 +331,9 @@ impl Driver {
     pub(crate) fn measure(&mut self) {
         let mut measured = Measured::of(self.simulation.as_ref(), self.seen.run);
         measured.time = self.seen.time;
+        if let Some(beside) = &self.beside {
+            measured.charts.insert(0, beside.chart());
+        }
         self.seen.measured = Arc::new(measured);
     }
 
@@ -298,6 +341,7 @@ impl Driver {
     pub(crate) fn look(&mut self) {
         self.seen.look += 1;
         self.sight.look(self.simulation.as_ref(), &mut self.seen.scene);
+        self.seen.beside = self.beside.as_mut().map(Beside::look);
     }
 }
 

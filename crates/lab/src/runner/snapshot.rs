@@ -6,6 +6,8 @@ use corpuscle_experiments::{Action, Honesty, Simulation, Table};
 use corpuscle_observe::{Chart, Check};
 use corpuscle_scene::Scene;
 
+use super::beside::Side;
+
 /// Everything there is to see at one moment.
 #[derive(Clone, Debug, Default)]
 pub struct Snapshot {
@@ -29,6 +31,8 @@ pub struct Snapshot {
     pub pace: f64,
     /// On the way to a chosen time: where from, and where to.
     pub travel: Option<(f64, f64)>,
+    /// The same system computed another way, where that is wanted.
+    pub beside: Option<Side>,
     /// What has been done to the system by hand, and when.
     pub deeds: Arc<Vec<(f64, Action)>>,
     /// Charts, checks and honesty, made now and then.
@@ -114,6 +118,7 @@ impl Snapshot {
             speed: self.speed,
             pace: self.pace,
             travel: self.travel,
+            beside: self.beside.clone(),
             deeds: self.deeds.clone(),
             measured: self.measured.clone(),
             fault: self.fault.clone(),

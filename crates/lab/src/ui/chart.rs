@@ -254,7 +254,9 @@ fn scale(scale: Scale) -> fn(f64) -> f64 {
 /// As much of a name as there is room for along its axis.
 fn fitted(ui: &Ui, name: &str, room: f32) -> String {
     let width = |text: String| ui.painter().layout_no_wrap(text, egui::FontId::proportional(NAME), Color32::WHITE).size().x;
-    let mut kept = name.to_owned();
+    // What stands in brackets or behind a comma explains; without it the name is still one.
+    let short = name.split_once(" (").or(name.split_once('，')).or(name.split_once(", ")).map_or(name, |(short, _)| short);
+    let mut kept = if width(name.to_owned()) > room { short } else { name }.to_owned();
     while width(kept.clone()) > room && kept.chars().count() > 2 {
         kept = kept.trim_end_matches('…').chars().take(kept.chars().count().saturating_sub(2)).collect();
         kept.push('…');

@@ -156,23 +156,39 @@ fn chi_squared_line(ui: &mut Ui, model: &Model, chart: &Chart) {
     }
 }
 
-/// The key of a small chart: one line, in which each series gets its share, as far as there is something to tell apart.
+/// Height of a line of a small key, and the widest a name in it gets.
+const KEY_LINE: f32 = 13.0;
+const KEY_NAME: f32 = 92.0;
+
+/// The key of a small chart: as many series as there is room for in so many lines.
 fn small_key(ui: &Ui, model: &Model, chart: &Chart, rect: Rect) {
     let theme = model.preferences.theme;
-    let share = rect.width() / chart.series.len() as f32;
-    let font = FontId::proportional(9.5);
-    let mut left = rect.left();
+    let (font, ink) = (FontId::proportional(9.5), theme.colours().quiet);
+    let mut at = rect.min;
     for (series, face) in chart.series.iter().zip(faces(chart, theme)) {
         let name = model.language().phrase(&series.name);
-        let mut job = LayoutJob::single_section(name.into_owned(), egui::TextFormat::simple(font.clone(), theme.colours().quiet));
-        job.wrap = TextWrapping::truncate_at_width(share - 22.0);
+        let mut job = LayoutJob::single_section(name.into_owned(), egui::TextFormat::simple(font.clone(), ink));
+        job.wrap = TextWrapping::truncate_at_width(KEY_NAME.min(rect.width() - 16.0));
         let text = ui.painter().layout_job(job);
-        let mark = Rect::from_min_size(pos2(left, rect.top()), vec2(11.0, rect.height()));
+        let width = 15.0 + text.size().x;
+        if at.x + width > rect.right() + 1.0 {
+            at = pos2(rect.left(), at.y + KEY_LINE);
+        }
+        if at.y + KEY_LINE > rect.bottom() + 1.0 {
+            return;
+        }
+        let mark = Rect::from_min_size(at, vec2(11.0, KEY_LINE));
         sign(&ui.painter().with_clip_rect(mark), mark, series, face, theme);
-        let width = text.size().x;
-        ui.painter().galley(pos2(left + 14.0, rect.center().y - 0.5 * text.size().y), text, theme.colours().quiet);
-        left += 22.0 + width;
+        ui.painter().galley(pos2(at.x + 14.0, mark.center().y - 0.5 * text.size().y), text, ink);
+        at.x += width + 7.0;
     }
+}
+
+/// A title in the largest size in which it fits; in the smallest it is cut.
+fn fitting_title(ui: &Ui, title: &str, width: f32) -> RichText {
+    let needs = |size: f32| ui.painter().layout_no_wrap(title.to_owned(), FontId::new(size, bold()), Color32::WHITE).size().x;
+    let size = [11.5, 10.5, 9.5].into_iter().find(|&size| needs(size) <= width).unwrap_or(9.5);
+    RichText::new(title).font(FontId::new(size, bold()))
 }
 
 /// A small chart; whether it was chosen.
@@ -188,10 +204,12 @@ fn tile(ui: &mut Ui, model: &Model, chart: &Chart, run: u64, rect: Rect) -> bool
     let mut chosen = response.clicked();
     ui.scope_builder(UiBuilder::new().max_rect(inner), |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        ui.add(egui::Label::new(RichText::new(title).font(FontId::new(11.5, bold()))).truncate());
+        let heading = fitting_title(ui, title, ui.available_width());
+        ui.add(egui::Label::new(heading).truncate());
         // A theory and a measurement tell themselves apart.
         if chart.series.len() > 2 {
-            let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 13.0), Sense::hover());
+            let lines = if rect.height() < 118.0 { 1.0 } else { 2.0 };
+            let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), lines * KEY_LINE), Sense::hover());
             small_key(ui, model, chart, rect);
         }
         let look = Look {

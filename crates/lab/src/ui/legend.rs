@@ -2,7 +2,7 @@
 
 use corpuscle_render::Projection;
 use corpuscle_scene::{Colour, Colouring, Scene, viridis};
-use egui::{Align2, Color32, ComboBox, FontId, Painter, Pos2, Rect, Ui, UiBuilder, pos2, vec2};
+use egui::{Align2, Color32, ComboBox, FontId, Painter, Pos2, Rect, TextWrapMode, Ui, UiBuilder, pos2, vec2};
 
 use crate::command::Command;
 use crate::language::{Language, Text};
@@ -33,7 +33,8 @@ fn choice(ui: &mut Ui, model: &mut Model, seen: &Snapshot, band: Rect) -> f32 {
     let inner = ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
         ui.spacing_mut().interact_size.y = 24.0;
         ui.spacing_mut().button_padding = vec2(7.0, 2.0);
-        let combo = ComboBox::from_id_salt("paint").width(0.0).selected_text(model.text(chosen.text()));
+        let combo =
+            ComboBox::from_id_salt("paint").width(0.0).wrap_mode(TextWrapMode::Extend).selected_text(model.text(chosen.text()));
         let response = combo.show_ui(ui, |ui| {
             for paint in Paint::ALL {
                 ui.selectable_value(&mut chosen, paint, model.text(paint.text()));
@@ -64,7 +65,7 @@ fn paint(painter: &Painter, room: Rect, scene: &Scene, theme: Theme, language: L
         Colouring::Species(names) => {
             for (index, name) in names.iter().enumerate() {
                 painter.circle_filled(pos2(left + 5.0, y), 5.0, theme.role(Colour::Accent(index as u8)));
-                left = word(left + 15.0, &language.phrase(name), colours.ink) + 16.0;
+                left = word(left + 15.0, &language.phrase(name), colours.ink) + 12.0;
             }
         }
         Colouring::Speed { most, unit } => scale(painter, left, y, &language.phrase("speed"), unit, [0.0, *most], &colours),

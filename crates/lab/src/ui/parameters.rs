@@ -10,6 +10,7 @@ use crate::language::Text;
 use crate::model::Model;
 use crate::number::significant;
 use crate::presets;
+use crate::rivals;
 use crate::runner::{Fault, Snapshot};
 
 /// Parameters that choose a whole situation.
@@ -35,6 +36,7 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
         ui.spacing_mut().interact_size.y = 22.0;
         ui.spacing_mut().button_padding.y = 2.0;
         presets(ui, model, experiment.name);
+        beside(ui, model);
         for (index, heading) in [Text::GroupPreset, Text::GroupSystem, Text::GroupMeasurement].into_iter().enumerate() {
             let mut of_group = experiment.parameters.iter().filter(|parameter| group(parameter) == index).peekable();
             if of_group.peek().is_some() {
@@ -83,10 +85,40 @@ fn presets(ui: &mut Ui, model: &mut Model, experiment: &str) {
     ui.add_space(2.0);
 }
 
+/// What is to compute the same beside it, where there is another way.
+fn beside(ui: &mut Ui, model: &mut Model) {
+    let rivals = rivals::of(&model.scenario);
+    if rivals.is_empty() {
+        return;
+    }
+    let language = model.language();
+    let none = model.text(Text::Alone);
+    let mut chosen = model.beside.clone();
+    ui.horizontal(|ui| {
+        let label = ui.label(model.text(Text::BesideIt)).on_hover_text(model.text(Text::BesideHelp));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let shown = chosen.as_ref().map_or(none.to_owned(), |name| language.choice(name));
+            let combo = ComboBox::from_id_salt("beside").width(150.0).selected_text(shown).truncate();
+            let response = combo.show_ui(ui, |ui| {
+                ui.selectable_value(&mut chosen, None, none);
+                for rival in &rivals {
+                    ui.selectable_value(&mut chosen, Some(rival.name.clone()), language.choice(&rival.name));
+                }
+            });
+            response.response.labelled_by(label.id).on_hover_text(model.text(Text::BesideHelp));
+        });
+    });
+    if chosen != model.beside {
+        model.set_beside(chosen.as_deref());
+    }
+    ui.add_space(2.0);
+}
+
 /// A system of a file's own has no declared parameters: the file is shown.
-fn free(ui: &mut Ui, model: &Model) {
+fn free(ui: &mut Ui, model: &mut Model) {
     let colours = model.preferences.theme.colours();
     section(ui, &colours, model.text(Text::OwnSystem));
+    beside(ui, model);
     quiet(ui, &colours, model.text(Text::OwnSystemNote));
     ui.add_space(6.0);
     ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {

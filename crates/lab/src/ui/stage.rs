@@ -24,6 +24,7 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot, easel: &mut 
     let (strip, whole) = whole.split_top_bottom_at_y(whole.top() + STRIP);
     let (middle, band) = whole.split_top_bottom_at_y(whole.bottom() - legend::HEIGHT);
     let (column, stage) = toolbar::beside(middle);
+    let (stage, other) = if seen.beside.is_some() { halves(stage) } else { (stage, Rect::NOTHING) };
     let response = ui.allocate_rect(stage, Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, model.text(Text::Stage)));
 
@@ -33,6 +34,12 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot, easel: &mut 
         // OpenGL's pictures stand on their heads.
         let upright = Rect::from_min_max(pos2(0.0, 1.0), pos2(1.0, 0.0));
         ui.painter().image(texture, stage, upright, Color32::WHITE);
+        if let Some(side) = &seen.beside
+            && let Some(texture) =
+                easel.paint(Canvas::Beside, seen.look, &side.scene, &view_of(other, camera, model, ui.ctx().pixels_per_point()))
+        {
+            ui.painter().image(texture, other, upright, Color32::WHITE);
+        }
     }
     // The same projection in points, for the pointer and what is drawn over the picture.
     let projection = projection_of(stage, camera);
@@ -46,11 +53,38 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot, easel: &mut 
         hovered(ui, model, seen, &response, &projection, stage);
     }
     caption(ui, model, seen, strip);
+    compared(ui, model, seen, stage, other);
     legend::show(ui, model, seen, band, &projection);
     toolbar::show(ui, model, seen, column);
     toolbar::settings(ui, model, seen, stage);
     stopwatch(&painter, model, seen, stage);
     hints::show(ui, model, stage);
+}
+
+/// The two halves of a stage on which two ways of computing the same are shown, with a line between.
+fn halves(stage: Rect) -> (Rect, Rect) {
+    let (left, right) = stage.split_left_right_at_x(stage.center().x);
+    (left.with_max_x(left.right() - 1.0), right.with_min_x(right.left() + 1.0))
+}
+
+/// What computes either half, and how long they agree.
+fn compared(ui: &Ui, model: &Model, seen: &Snapshot, stage: Rect, other: Rect) {
+    let Some(side) = &seen.beside else { return };
+    let (language, colours) = (model.language(), model.preferences.theme.colours());
+    let painter = ui.painter();
+    painter.vline(stage.right() + 1.0, stage.y_range(), Stroke::new(2.0, colours.line));
+    let engine = &seen.measured.honesty.engine;
+    let own = engine.rsplit(", ").next().map_or_else(|| engine.clone(), |name| language.choice(name));
+    for (half, name) in [(stage, own), (other, language.choice(&side.name))] {
+        card(&painter.with_clip_rect(half), model, half.center_top() + vec2(0.0, 10.0), Align2::CENTER_TOP, &name);
+    }
+    let verdict = match (&side.fault, side.parted) {
+        (Some(fault), _) => fault.clone(),
+        (None, Some(time)) => language.fill(Text::AgreeUntil, &[&significant(time, 4)]),
+        (None, None) => language.fill(Text::AgreeYet, &[&significant(side.apart, 2)]),
+    };
+    let both = stage.union(other);
+    card(&painter.with_clip_rect(both), model, both.center_bottom() - vec2(0.0, 12.0), Align2::CENTER_BOTTOM, &verdict);
 }
 
 fn view_of(stage: Rect, camera: Camera, model: &Model, pixels: f32) -> View {

@@ -4,7 +4,7 @@ use std::marker::PhantomData;
 
 use glow::HasContext;
 
-use super::Gl;
+use super::{Cost, Gl};
 use crate::RenderError;
 
 /// What one quad is made from. The attributes of the shader have the locations 0, 1, 2, ... in the order of the fields.
@@ -61,6 +61,7 @@ impl<T: Vertex> VertexBuffer<T> {
     pub(crate) fn write(&mut self, first: usize, elements: &[T]) {
         debug_assert!(first + elements.len() <= self.length);
         let offset = (first * size_of::<T>()) as i32;
+        Cost::sent(size_of_val(elements));
         unsafe {
             self.gl.bind_buffer(glow::ARRAY_BUFFER, Some(self.buffer));
             self.gl.buffer_sub_data_u8_slice(glow::ARRAY_BUFFER, offset, bytemuck::cast_slice(elements));
@@ -70,6 +71,7 @@ impl<T: Vertex> VertexBuffer<T> {
     /// Draws one quad an element; the shader knows its corner by `gl_VertexID`.
     pub(crate) fn draw(&self) {
         if self.length > 0 {
+            Cost::drawn();
             unsafe {
                 self.gl.bind_vertex_array(Some(self.array));
                 self.gl.draw_arrays_instanced(glow::TRIANGLE_STRIP, 0, 4, self.length as i32);
@@ -92,6 +94,7 @@ impl Strip {
     }
 
     pub(crate) fn draw(&self, vertices: usize) {
+        Cost::drawn();
         unsafe {
             // The core profile draws nothing without a vertex array, be it empty.
             self.gl.bind_vertex_array(Some(self.array));

@@ -6,6 +6,7 @@
 #![allow(unsafe_code, reason = "OpenGL is a C interface; these files are the only ones that call it")]
 
 mod buffer;
+mod cost;
 mod framebuffer;
 mod pass;
 mod program;
@@ -13,6 +14,7 @@ mod screen;
 mod texture;
 
 pub(crate) use buffer::{Strip, Vertex, VertexBuffer};
+pub use cost::Cost;
 pub(crate) use framebuffer::Framebuffer;
 pub(crate) use pass::{Pass, Viewport, begin_frame, end_frame, largest_side};
 pub(crate) use program::Program;

@@ -2,7 +2,7 @@
 
 use glow::HasContext;
 
-use super::Gl;
+use super::{Cost, Gl};
 use crate::RenderError;
 
 /// What one texel holds.
@@ -81,6 +81,7 @@ impl Texture {
         debug_assert_eq!(bytes.len(), size[0] * size[1] * self.format.bytes());
         debug_assert!(at[0] + size[0] <= self.size[0] && at[1] + size[1] <= self.size[1]);
         let (_, layout, component) = self.format.names();
+        Cost::sent(bytes.len());
         unsafe {
             self.gl.bind_texture(glow::TEXTURE_2D, Some(self.handle));
             self.gl.pixel_store_i32(glow::UNPACK_ALIGNMENT, 1);

@@ -9,8 +9,11 @@ use crate::projection::pairs;
 
 const BODY: &str = include_str!("../shaders/body.glsl");
 
-/// Bodies are compared with what was uploaded, and uploaded again, in runs of this many.
-const RUN: usize = 256;
+/// Changed bodies so near each other in the list are sent together, where few have changed and where many have.
+const NEAR: usize = 4;
+const FAR: usize = 64;
+/// Few: one in so many.
+const SPARSE: usize = 16;
 /// Opacity of an image in a periodic box.
 const FAINT: f32 = 0.2;
 /// Bodies beyond this number are drawn without images, which cost as much again as the bodies, each of eight.
@@ -48,7 +51,8 @@ pub(crate) struct Bodies {
     buffer: VertexBuffer<BodyVertex>,
     /// The bodies as they were when they were uploaded.
     uploaded: Vec<Body>,
-    /// Kept between frames to save its allocation.
+    /// Kept between frames to save their allocation.
+    changed: Vec<usize>,
     scratch: Vec<BodyVertex>,
 }
 
@@ -59,6 +63,7 @@ impl Bodies {
             sphere: Program::new(gl, "sphere", &[SPACE, BODY, include_str!("../shaders/sphere.glsl")])?,
             buffer: VertexBuffer::new(gl)?,
             uploaded: Vec::new(),
+            changed: Vec::new(),
             scratch: Vec::new(),
         })
     }
@@ -127,25 +132,16 @@ impl Bodies {
             self.uploaded.extend_from_slice(bodies);
             return;
         }
-        let changed = |run: usize, uploaded: &[Body]| {
-            let range = run * RUN..bodies.len().min((run + 1) * RUN);
-            bodies[range.clone()] != uploaded[range]
-        };
-        let runs = bodies.len().div_ceil(RUN);
-        let mut run = 0;
-        while run < runs {
-            let first = run;
-            while run < runs && changed(run, &self.uploaded) {
-                run += 1;
-            }
-            if run > first {
-                let range = first * RUN..bodies.len().min(run * RUN);
-                self.scratch.clear();
-                self.scratch.extend(bodies[range.clone()].iter().map(BodyVertex::from));
-                self.buffer.write(range.start, &self.scratch);
-                self.uploaded[range.clone()].copy_from_slice(&bodies[range]);
-            }
-            run += 1;
+        self.changed.clear();
+        self.changed.extend((0..bodies.len()).filter(|&i| bodies[i] != self.uploaded[i]));
+        // Few that are far apart are sent one by one; of many, calls would cost more than the bodies between them.
+        let gap = if SPARSE * self.changed.len() <= bodies.len() { NEAR } else { FAR };
+        for piece in self.changed.chunk_by(|a, b| b - a <= gap) {
+            let range = piece[0]..piece[piece.len() - 1] + 1;
+            self.scratch.clear();
+            self.scratch.extend(bodies[range.clone()].iter().map(BodyVertex::from));
+            self.buffer.write(range.start, &self.scratch);
+            self.uploaded[range.clone()].copy_from_slice(&bodies[range]);
         }
     }
 }
