@@ -18,8 +18,10 @@ use super::snapshot::{Fault, Measured, Snapshot};
 const PARTS: u32 = 16;
 /// What a single step advances, in seconds of the viewer.
 const STEP: f64 = 1.0 / 30.0;
-/// Parts of the run that one look for orders may take on the way to a chosen time, at first.
+/// Parts of the run that are advanced at once, at first: then as many as a look for orders has time for.
 const STRIDES: f64 = 400.0;
+/// Parts of the run that are advanced at once at least: what each costs by itself would else be all the work.
+const FINEST: f64 = 1e5;
 
 /// What a person asks of the simulation.
 #[derive(Clone)]
@@ -56,7 +58,7 @@ pub(crate) struct Driver {
     ahead: usize,
     /// Speed as a multiple of the usual.
     factor: f64,
-    /// How far a stride on the way to a chosen time goes.
+    /// How far the simulation is advanced at once, at most.
     stride: f64,
     /// How the viewer looks at it.
     sight: Sight,
@@ -141,13 +143,26 @@ impl Driver {
     }
 
     fn advance(&mut self, to: f64, enough: impl Fn() -> bool) {
-        let from = self.seen.time;
-        for part in 1..=PARTS {
-            let next = if part == PARTS { to } else { from + (to - from) * f64::from(part) / f64::from(PARTS) };
-            if !self.reach(next) || enough() {
+        let part = (to - self.seen.time) / f64::from(PARTS);
+        let mut strides = 0;
+        while self.seen.time < to {
+            let stride = if self.stride > 0.0 { part.min(self.stride) } else { part };
+            let next = if self.seen.time + 1.01 * stride < to { self.seen.time + stride } else { to };
+            if !self.reach(next) {
+                return;
+            }
+            strides += 1;
+            if enough() {
+                self.fit_stride(strides);
                 return;
             }
         }
+    }
+
+    /// So many strides took as long as one look may: fewer or more of them should.
+    fn fit_stride(&mut self, strides: u32) {
+        let factor = if strides > 4 { 2.0 } else { 1.0 / (1.0 + 1.0 / f64::from(strides)) };
+        self.stride = (self.stride * factor).max((self.seen.end - self.seen.start) / FINEST);
     }
 
     /// Advances to a time; false when the dynamics broke down.
@@ -186,8 +201,7 @@ impl Driver {
             }
             strides += 1;
             if enough() {
-                let factor = if strides > 4 { 2.0 } else { 1.0 / (1.0 + 1.0 / f64::from(strides)) };
-                self.stride = (self.stride * factor).max(f64::EPSILON * goal.abs());
+                self.fit_stride(strides);
                 return;
             }
         }

@@ -156,19 +156,23 @@ fn chi_squared_line(ui: &mut Ui, model: &Model, chart: &Chart) {
     }
 }
 
-/// Height of a line of a small key, and the widest a name in it gets.
+/// Height of a line of a small key.
 const KEY_LINE: f32 = 13.0;
-const KEY_NAME: f32 = 92.0;
+/// A name shorter than this tells nothing.
+const KEY_NAME: f32 = 42.0;
 
 /// The key of a small chart: as many series as there is room for in so many lines.
 fn small_key(ui: &Ui, model: &Model, chart: &Chart, rect: Rect) {
     let theme = model.preferences.theme;
     let (font, ink) = (FontId::proportional(9.5), theme.colours().quiet);
+    let lines = (rect.height() / KEY_LINE).round().max(1.0);
+    let in_a_line = (chart.series.len() as f32 / lines).ceil();
+    let most = (rect.width() / in_a_line - 22.0).max(KEY_NAME);
     let mut at = rect.min;
     for (series, face) in chart.series.iter().zip(faces(chart, theme)) {
         let name = model.language().phrase(&series.name);
         let mut job = LayoutJob::single_section(name.into_owned(), egui::TextFormat::simple(font.clone(), ink));
-        job.wrap = TextWrapping::truncate_at_width(KEY_NAME.min(rect.width() - 16.0));
+        job.wrap = TextWrapping::truncate_at_width(most);
         let text = ui.painter().layout_job(job);
         let width = 15.0 + text.size().x;
         if at.x + width > rect.right() + 1.0 {

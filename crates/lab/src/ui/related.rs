@@ -40,7 +40,7 @@ mod tests {
     fn checks_lead_to_the_chart_of_their_quantity() {
         for (name, check, chart) in [
             ("brownian", "diffusion coefficient D, Einstein", "diffusion"),
-            ("brownian", "kurtosis of the displacements", "steps"),
+            ("brownian", "k_B T by Perrin's way, from the displacement", "displacement"),
             ("entropy", "entropy of free expansion ΔS", "entropy-expansion"),
         ] {
             let experiment = find(name).unwrap();
