@@ -10,13 +10,13 @@ impl<const D: usize> EventDriven<D> {
     ///
     /// # Errors
     /// When the particles do not fit into the box, or grow; the old ones then stay.
-    pub fn set_particles(&mut self, particles: Particles<D>) -> Result<(), Invalid> {
+    pub fn set_particles(&mut self, particles: &Particles<D>) -> Result<(), Invalid> {
         if self.pairs.growth().is_some() {
             return Err(Invalid::new("particles", "growing", "particles that have stopped growing"));
         }
         let boundary = Boundary { piston: self.piston(), ..self.boundary.clone() };
-        boundary.validate_particles_at(self.time, &particles)?;
-        let fresh = Self::idle(boundary, &particles, self.rules, None)?;
+        boundary.validate_particles_at(self.time, particles)?;
+        let fresh = Self::idle(boundary, particles, self.rules, None)?;
         let next_epoch = fresh.next_epoch + self.counts.collisions + self.counts.edges + self.counts.wall_collisions;
         let (removals, counts, time) = (removals(&fresh.boundary, self.time), self.counts, self.time);
         // Times in flights and plans count from the epoch, which is now.

@@ -110,9 +110,9 @@ pub(crate) fn on_hard<const D: usize>(engine: &mut EventDriven<D>, action: Actio
         }
         Action::Add { at, velocity, like } => {
             let particles = added(&present(engine), engine.time(), engine.snapshot(), at, velocity, like)?;
-            engine.set_particles(particles)?;
+            engine.set_particles(&particles)?;
         }
-        Action::Remove { body } => engine.set_particles(without(engine.snapshot(), body)?)?,
+        Action::Remove { body } => engine.set_particles(&without(engine.snapshot(), body)?)?,
     }
     Ok(())
 }

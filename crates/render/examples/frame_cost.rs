@@ -1,4 +1,5 @@
-//! What a picture of the stage costs on this machine's OpenGL, without a screen: time, bytes sent, calls to draw.
+//! What a picture of the stage costs on this machine's OpenGL, without a screen: time with reading it back, bytes sent, calls
+//! to draw.
 //!
 //! `cargo run --release -p corpuscle-render --example frame_cost -- [FRAMES] [LARGEST]`
 //!
@@ -28,7 +29,7 @@ fn main() -> Result<(), RenderError> {
                 pass(&mut scene, kind, frame);
                 Cost::take();
                 let began = Instant::now();
-                let picture = headless.draw(&scene, &view)?;
+                let picture = headless.picture(&scene, &view)?;
                 times.push(began.elapsed().as_secs_f64() * 1e3);
                 cost = Cost::take();
                 assert_eq!(picture.width, 1280);

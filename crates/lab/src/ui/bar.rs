@@ -43,7 +43,7 @@ fn whole_clauses(ui: &Ui, text: &str, width: f32) -> String {
     let ends = text.char_indices().filter(|(_, c)| matches!(c, '.' | ':' | ',' | ';' | '。' | '：' | '，' | '；' | '、'));
     let full = if text.is_ascii() { '.' } else { '。' };
     let clauses = ends.map(|(end, _)| format!("{}{full}", text[..end].trim_end()));
-    clauses.filter(|clause| fits(clause)).last().unwrap_or_default()
+    clauses.rev().find(|clause| fits(clause)).unwrap_or_default()
 }
 
 /// From the right end inwards.

@@ -64,22 +64,10 @@ pub(super) fn settings(ui: &mut Ui, model: &mut Model, seen: &Snapshot, stage: R
     ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
         let margin = Margin::symmetric(10, 5);
         Frame::new().fill(colours.panel).stroke((1.0, colours.line)).corner_radius(5.0).inner_margin(margin).show(ui, |ui| {
-            ui.horizontal(|ui| match model.tool {
-                Tool::Partition => {
-                    let label = ui.label(model.text(Text::HoleWidth));
-                    let percent = |value: f64| format!("{} %", significant(100.0 * value, 3));
-                    let field = DragValue::new(&mut model.tools.hole)
-                        .range(0.0..=1.0)
-                        .speed(0.005)
-                        .custom_formatter(move |value, _| percent(value))
-                        .custom_parser(|text| text.trim_end_matches('%').trim().parse::<f64>().ok().map(|value| 0.01 * value));
-                    ui.add(field).labelled_by(label.id);
-                    let open = ui.button(model.text(Text::DoOpenPartitions));
-                    if open.on_hover_text(Command::OpenPartitions.key()).clicked() {
-                        model.obey(Command::OpenPartitions, seen);
-                    }
-                }
-                _ => {
+            ui.horizontal(|ui| {
+                if model.tool == Tool::Partition {
+                    partition(ui, model, seen);
+                } else {
                     let label = ui.label(model.text(Text::WallTemperature));
                     let field = DragValue::new(&mut model.tools.temperature).range(0.0..=1e6).speed(0.02);
                     ui.add(field.custom_formatter(|value, _| significant(value, 4))).labelled_by(label.id);
@@ -87,6 +75,21 @@ pub(super) fn settings(ui: &mut Ui, model: &mut Model, seen: &Snapshot, stage: R
             });
         });
     });
+}
+
+/// The hole of the next plate, and a way to take all of them out.
+fn partition(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
+    let label = ui.label(model.text(Text::HoleWidth));
+    let field = DragValue::new(&mut model.tools.hole)
+        .range(0.0..=1.0)
+        .speed(0.005)
+        .custom_formatter(|value, _| format!("{} %", significant(100.0 * value, 3)))
+        .custom_parser(|text| text.trim_end_matches('%').trim().parse::<f64>().ok().map(|value| 0.01 * value));
+    ui.add(field).labelled_by(label.id);
+    let open = ui.button(model.text(Text::DoOpenPartitions));
+    if open.on_hover_text(Command::OpenPartitions.key()).clicked() {
+        model.obey(Command::OpenPartitions, seen);
+    }
 }
 
 /// The part of the stage that is left beside the column.
