@@ -11,6 +11,7 @@ mod gas;
 mod horizon;
 pub mod parameter;
 mod peek;
+mod replicas;
 pub mod simulation;
 
 pub use parameter::{Kind, Parameter, Settings, Value};
@@ -43,6 +44,10 @@ pub static REGISTRY: &[&Experiment] = &[
     &experiments::ideal_gas::EXPERIMENT,
     &experiments::three_body::EXPERIMENT,
     &experiments::wave::EXPERIMENT,
+    &experiments::atmosphere::EXPERIMENT,
+    &experiments::billiard::EXPERIMENT,
+    &experiments::newton_cradle::EXPERIMENT,
+    &experiments::granular::EXPERIMENT,
 ];
 
 /// The experiment of this name.
