@@ -6,6 +6,8 @@ pub(crate) mod brownian;
 pub(crate) mod entropy;
 pub(crate) mod granular;
 pub(crate) mod ideal_gas;
+pub(crate) mod lennard_jones;
 pub(crate) mod newton_cradle;
+pub(crate) mod sound;
 pub(crate) mod three_body;
 pub(crate) mod wave;

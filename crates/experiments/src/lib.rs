@@ -48,6 +48,8 @@ pub static REGISTRY: &[&Experiment] = &[
     &experiments::billiard::EXPERIMENT,
     &experiments::newton_cradle::EXPERIMENT,
     &experiments::granular::EXPERIMENT,
+    &experiments::sound::EXPERIMENT,
+    &experiments::lennard_jones::EXPERIMENT,
 ];
 
 /// The experiment of this name.

@@ -102,7 +102,9 @@ impl<const D: usize> Observer<D> for Watch<'_, D> {
 /// What can be said of the numbers of event-driven runs, each with the energy it started with where that is conserved.
 pub(crate) fn honesty<'a, const D: usize>(runs: impl Iterator<Item = (&'a EventDriven<D>, Option<f64>)>) -> Honesty {
     let mut honesty = Honesty { engine: "event-driven".into(), work_unit: "collisions", ..Honesty::default() };
-    let largest = |so_far: Option<f64>, value: f64| Some(so_far.map_or(value, |most| if value > most || value.is_nan() { value } else { most }));
+    let largest = |so_far: Option<f64>, value: f64| {
+        Some(so_far.map_or(value, |most| if value > most || value.is_nan() { value } else { most }))
+    };
     let mut rejected = 0;
     for (engine, energy) in runs {
         let counts = engine.counts();

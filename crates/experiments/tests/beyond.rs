@@ -14,14 +14,15 @@ fn repeats(experiment: &str, values: &[(&str, &str)]) {
 
 #[test]
 fn atmosphere() {
-    agrees_over_seeds("atmosphere", &[("replicas", "12")]);
+    agrees_over_seeds("atmosphere", &[("replicas", "8"), ("duration", "30")]);
     repeats("atmosphere", &[("replicas", "3"), ("duration", "12")]);
     assert_eq!(refused("atmosphere", &[("gravity", "1")]), "gravity");
 }
 
 #[test]
 fn atmosphere_of_spheres_over_an_insulating_floor() {
-    agrees_over_seeds("atmosphere", &[("dimension", "3"), ("floor", "insulating"), ("replicas", "12")]);
+    let few = [("particles", "60"), ("heavy_particles", "40"), ("duration", "20"), ("replicas", "8")];
+    agrees_over_seeds("atmosphere", &[&[("dimension", "3"), ("floor", "insulating")][..], &few].concat());
 }
 
 #[test]
@@ -34,7 +35,7 @@ fn billiard() {
 #[test]
 fn billiards_of_sinai() {
     for layout in ["square", "triangular"] {
-        agrees_over_seeds("billiard", &[("layout", layout), ("coverage", "0.3"), ("replicas", "12")]);
+        agrees_over_more_seeds("billiard", &[("layout", layout), ("coverage", "0.3"), ("replicas", "12")], 24);
     }
 }
 
@@ -61,12 +62,45 @@ fn newton_cradle() {
 
 #[test]
 fn granular() {
-    agrees_over_seeds("granular", &[("crowd", "50")]);
+    agrees_over_more_seeds("granular", &[("crowd", "50"), ("replicas", "24")], 16);
     repeats("granular", &[("replicas", "3"), ("duration", "5"), ("crowd", "200")]);
     assert_eq!(refused("granular", &[("restitution", "1")]), "restitution");
 }
 
 #[test]
 fn granular_spheres() {
-    agrees_over_seeds("granular", &[("dimension", "3"), ("restitution", "0.95"), ("crowd", "50"), ("replicas", "24")]);
+    let few = [("particles", "100"), ("crowd", "50"), ("replicas", "8"), ("duration", "5")];
+    agrees_over_more_seeds("granular", &[&[("dimension", "3"), ("restitution", "0.9")][..], &few].concat(), 16);
+}
+
+/// One agreement each of three kinds a run: fewer scores than the others, over more seeds.
+#[test]
+fn sound() {
+    agrees_over_more_seeds("sound", &[("replicas", "12"), ("particles", "400")], 16);
+    repeats("sound", &[("replicas", "3"), ("particles", "100"), ("duration", "0.6")]);
+    assert_eq!(refused("sound", &[("packing_fraction", "0.7")]), "packing_fraction");
+}
+
+#[test]
+fn lennard_jones() {
+    agrees_over_more_seeds("lennard-jones", &[("duration", "30")], 14);
+    repeats("lennard-jones", &[("state", "gas"), ("particles", "256"), ("duration", "6")]);
+    assert_eq!(refused("lennard-jones", &[("state", "solid")]), "state");
+}
+
+/// As `agrees_over_seeds`, with as many seeds as it takes for few checks.
+fn agrees_over_more_seeds(experiment: &str, values: &[(&str, &str)], seeds: u64) {
+    let runs: Vec<Vec<f64>> = (1..=seeds)
+        .map(|seed| {
+            let checks = run(experiment, seed, values, 1).checks();
+            assert!(checks.iter().all(|check| check.passed), "seed {seed}: {checks:?}");
+            checks.iter().filter_map(|check| check.z).collect()
+        })
+        .collect();
+    let scores: Vec<f64> = runs.iter().flatten().copied().collect();
+    let n = scores.len() as f64;
+    assert!(n >= 40.0, "only {n} scores");
+    let (mean, square) = (scores.iter().sum::<f64>() / n, scores.iter().map(|z| z * z).sum::<f64>() / n);
+    println!("{n} scores: mean {mean:.3}, mean square {square:.3}");
+    assert!(mean.abs() * n.sqrt() < 4.0 && (square - 1.0).abs() < 4.0 * (2.0 / n).sqrt(), "mean {mean}, mean square {square}");
 }

@@ -128,22 +128,25 @@ impl<const D: usize> Set<D> {
         let counts = [settings.whole("particles"), settings.whole("heavy_particles")];
         let scales = masses.map(|mass| temperature / (mass * gravity));
         if scales[0].min(scales[1]) < 4.0 * radius {
-            return Err(settings.invalid("gravity", "scale heights kT/(m g) of two diameters at least: otherwise it is a heap, not air"));
+            return Err(
+                settings.invalid("gravity", "scale heights kT/(m g) of two diameters at least: otherwise it is a heap, not air")
+            );
         }
         let height = HEIGHT * scales[0].max(scales[1]) + 2.0 * radius;
         let columns: f64 = (0..2).map(|s| counts[s] as f64 / scales[s]).sum();
         let area = columns * corpuscle_core::particles::ball_volume::<D>(radius) / settings.real("floor_packing");
         let width = if D == 2 { area } else { area.sqrt() };
         if width < 6.0 * radius {
-            return Err(settings.invalid("floor_packing", format!("a box three diameters wide at least; this one is {width:.3} wide")));
+            return Err(
+                settings.invalid("floor_packing", format!("a box three diameters wide at least; this one is {width:.3} wide"))
+            );
         }
         let mut upper = [width; D];
         upper[D - 1] = height;
         let mut boundary = Boundary::new([0.0; D], upper, Faces::Periodic);
         boundary.axes[D - 1] = Faces::Walls;
         boundary.faces[D - 1][0].temperature = Some(temperature);
-        let species: [Species; 2] =
-            std::array::from_fn(|s| Species { count: counts[s], radius, mass: masses[s], index: s as u16 });
+        let species: [Species; 2] = std::array::from_fn(|s| Species { count: counts[s], radius, mass: masses[s], index: s as u16 });
         let profile = Profile::new::<D>(species, scales, height - 2.0 * radius, area);
         Ok(Self {
             seed: settings.seed,
@@ -335,7 +338,9 @@ impl<const D: usize> Atmosphere<D> {
                 }))
                 .with(Series::with_errors(format!("{name}: measured"), Style::Points, measured));
         }
-        chart.noting("Straight lines, three times as steep for three times the mass: the barometric law. Near the floor particles crowd.")
+        chart.noting(
+            "Straight lines, three times as steep for three times the mass: the barometric law. Near the floor particles crowd.",
+        )
     }
 
     fn temperature_chart(&self) -> Chart {
@@ -427,7 +432,11 @@ impl<const D: usize> Simulation for Atmosphere<D> {
         if time >= 10.0 * self.set.rise {
             for (s, name) in ["mean height of the light gas", "mean height of the heavy gas"].into_iter().enumerate() {
                 let expected = self.set.profile.mean_height(s);
-                checks.push(self.mean_height(s).check(name, expected, "dP/dz = -rho g with the equation of state of hard particles"));
+                checks.push(self.mean_height(s).check(
+                    name,
+                    expected,
+                    "dP/dz = -rho g with the equation of state of hard particles",
+                ));
             }
             let load = self.columns.mean(|column| (column.load.floor - column.load.ceiling) / time);
             checks.push(load.check("force on the floor", self.weight(), "Newton: the floor carries the weight"));

@@ -161,9 +161,8 @@ impl Billiard {
         let free_path = self.layout.free_path();
         let width = table::LONGEST / bins as f64;
         let densities = (0..bins).filter_map(|bin| {
-            let density = self.tables.mean(|table| {
-                table.flights.counts()[bin] as f64 / (table.flights.total().max(1) as f64 * width)
-            });
+            let density =
+                self.tables.mean(|table| table.flights.counts()[bin] as f64 / (table.flights.total().max(1) as f64 * width));
             (density.mean > 0.0).then_some((width * (bin as f64 + 0.5), density.mean, density.standard_error))
         });
         let mut chart = Chart::new(
@@ -173,7 +172,9 @@ impl Billiard {
             Axis::logarithmic("probability density", ""),
         );
         if self.layout.is_random() {
-            chart = chart.with(Series::theory("exp(−s/l), independent flights", 0.0, table::LONGEST, 80, Scale::Linear, |s| libm::exp(-s)));
+            chart = chart.with(Series::theory("exp(−s/l), independent flights", 0.0, table::LONGEST, 80, Scale::Linear, |s| {
+                libm::exp(-s)
+            }));
         }
         chart
             .with(Series::with_errors("measured", Style::Points, densities))
@@ -269,7 +270,11 @@ impl Simulation for Billiard {
         let time = self.tables.sampled();
         if self.tables.times.len() > 4 {
             let rate = self.tables.mean(|table| table.rays.hits() as f64 / (table.rays.len() as f64 * time));
-            checks.push(rate.check("collision rate v/l", 1.0 / self.layout.free_path(), "l = pi A/P, exact: Santaló; Chernov 1997"));
+            checks.push(rate.check(
+                "collision rate v/l",
+                1.0 / self.layout.free_path(),
+                "l = pi A/P, exact: Santaló; Chernov 1997",
+            ));
             let squares: Vec<[f64; 2]> =
                 self.tables.members.iter().map(|table| [table.rays.squares(), table.rays.hits() as f64]).collect();
             let impact = Estimate::jackknife(&squares, |[squares, hits]| squares / hits);

@@ -267,7 +267,9 @@ impl<const D: usize> Granular<D> {
                 Self::haff(t, self.crowd_cooling)
             }))
             .with(Series::new("the crowd", Style::Points, crowd))
-            .noting("Slope −2 on these axes. The crowd leaves the law where streams form: they keep energy that contacts cannot take.")
+            .noting(
+                "Slope −2 on these axes. The crowd leaves the law where streams form: they keep energy that contacts cannot take.",
+            )
     }
 
     fn contact_chart(&self) -> Chart {
@@ -291,10 +293,15 @@ impl<const D: usize> Granular<D> {
     fn clumping_chart(&self) -> Chart {
         let crowd = &self.crowd.members[0];
         let points = self.crowd.times.iter().copied().zip(crowd.clumping.iter().copied());
-        Chart::new("clumping", "Clusters", Axis::linear("time t", ""), Axis::linear("variance of the count in a cell, over Poisson's", ""))
-            .with(Series::theory("chance", 0.0, self.crowd.sampled(), 2, Scale::Linear, |_| 1.0))
-            .with(Series::new("the crowd", Style::Line, points))
-            .noting("An even fluid is steadier than chance. Clusters and voids raise the variance far above it.")
+        Chart::new(
+            "clumping",
+            "Clusters",
+            Axis::linear("time t", ""),
+            Axis::linear("variance of the count in a cell, over Poisson's", ""),
+        )
+        .with(Series::theory("chance", 0.0, self.crowd.sampled(), 2, Scale::Linear, |_| 1.0))
+        .with(Series::new("the crowd", Style::Line, points))
+        .noting("An even fluid is steadier than chance. Clusters and voids raise the variance far above it.")
     }
 
     /// `-d ln T / dC` for `C` contacts in the whole box.
@@ -369,9 +376,14 @@ impl<const D: usize> Simulation for Granular<D> {
             let d = D as f64;
             // In a closed system speeds are bounded: the factor f/(f + 2).
             let scale = (1.0 + 2.0 / d) * self.freedom / (self.freedom + 2.0);
-            let excess = Estimate { mean: kurtosis.mean / scale - 1.0, standard_error: kurtosis.standard_error / scale, ..kurtosis };
+            let excess =
+                Estimate { mean: kurtosis.mean / scale - 1.0, standard_error: kurtosis.standard_error / scale, ..kurtosis };
             let reference = "van Noije and Ernst 1998, doi:10.1007/s100350050009";
-            checks.push(excess.check("excess a2 of the fourth moment of the speed", excess_kurtosis(d, self.restitution), reference));
+            checks.push(excess.check(
+                "excess a2 of the fourth moment of the speed",
+                excess_kurtosis(d, self.restitution),
+                reference,
+            ));
         }
         let momentum = self.boxes.members.iter().map(|grains| grains.engine.momentum().norm()).fold(0.0, f64::max);
         let scale = self.freedom.sqrt();

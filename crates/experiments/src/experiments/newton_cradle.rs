@@ -34,12 +34,7 @@ pub(crate) static EXPERIMENT: Experiment = Experiment {
 };
 
 static PARAMETERS: &[Parameter] = &[
-    Parameter {
-        name: "balls",
-        unit: "",
-        help: "Number of balls.",
-        kind: Kind::Whole { default: 5, least: 2, most: 30 },
-    },
+    Parameter { name: "balls", unit: "", help: "Number of balls.", kind: Kind::Whole { default: 5, least: 2, most: 30 } },
     Parameter {
         name: "lifted",
         unit: "",
@@ -267,7 +262,12 @@ impl Simulation for Cradle {
             let passed = self.row.last_speed() / (self.amplitude * std::f64::consts::TAU);
             let expected = self.passed_on();
             let reference = format!("prod (1 + e) m_i/(m_i + m_(i+1)) = {expected:.6}: each contact a two-body problem");
-            checks.push(Check::at_most("first speed of the last ball: relative error", (passed / expected - 1.0).abs(), slack, reference));
+            checks.push(Check::at_most(
+                "first speed of the last ball: relative error",
+                (passed / expected - 1.0).abs(),
+                slack,
+                reference,
+            ));
         }
         if let Some(sample) = last {
             let centre = (sample.centre / self.samples[0].centre - 1.0).abs();
@@ -275,9 +275,16 @@ impl Simulation for Cradle {
             checks.push(Check::at_most("energy of the centre of mass: relative error", centre, 1e-11, reference));
             let relative = (sample.energy - sample.centre) / self.samples[0].energy;
             if e < 1.0 && relative < TOGETHER {
-                let share = (sample.energy / self.samples[0].energy / (self.samples[0].centre / self.samples[0].energy) - 1.0).abs();
-                let reference = format!("all swing together with the amplitude {:.4} of the centre of mass", self.common_amplitude());
-                checks.push(Check::at_most("energy that is left over the centre of mass's, less 1", share, TOGETHER * n, reference));
+                let share =
+                    (sample.energy / self.samples[0].energy / (self.samples[0].centre / self.samples[0].energy) - 1.0).abs();
+                let reference =
+                    format!("all swing together with the amplitude {:.4} of the centre of mass", self.common_amplitude());
+                checks.push(Check::at_most(
+                    "energy that is left over the centre of mass's, less 1",
+                    share,
+                    TOGETHER * n,
+                    reference,
+                ));
             }
         }
         if let Some(drift) = self.honesty().energy_drift {

@@ -41,11 +41,23 @@ impl Layout {
         let area = std::f64::consts::PI * RADIUS * RADIUS / coverage;
         let (random, square) = (word == "random", word == "square");
         // Random sequential placement jams near 0.547; a square lattice closes at pi/4, a triangular one at pi/(2 sqrt 3) = 0.907.
-        let most = if random { 0.4 } else if square { 0.78 } else { 0.85 };
+        let most = if random {
+            0.4
+        } else if square {
+            0.78
+        } else {
+            0.85
+        };
         if coverage > most {
             return Err(settings.invalid("coverage", format!("at most {most} in this layout")));
         }
-        let scatterers = if random { settings.whole("scatterers") } else if square { CELLS * CELLS } else { 2 * CELLS * 2 };
+        let scatterers = if random {
+            settings.whole("scatterers")
+        } else if square {
+            CELLS * CELLS
+        } else {
+            2 * CELLS * 2
+        };
         let extent = if random {
             [(area * scatterers as f64).sqrt(); 2]
         } else if square {

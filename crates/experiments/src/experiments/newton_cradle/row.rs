@@ -25,7 +25,10 @@ pub(super) struct Row {
     crowd: u32,
 }
 
-resume!(Row { values: [displacement, velocity, since, now, contacts, last_speed, overlap, crowd], set_up: [masses, restitution, gap] });
+resume!(Row {
+    values: [displacement, velocity, since, now, contacts, last_speed, overlap, crowd],
+    set_up: [masses, restitution, gap]
+});
 
 impl Row {
     /// Balls let go at these displacements.
@@ -114,7 +117,13 @@ impl Row {
             return None;
         }
         let angle = libm::atan2(b, a) + libm::acos(-self.gap / r);
-        let angle = if angle <= 0.0 { angle + TAU } else if angle > TAU { angle - TAU } else { angle };
+        let angle = if angle <= 0.0 {
+            angle + TAU
+        } else if angle > TAU {
+            angle - TAU
+        } else {
+            angle
+        };
         Some(angle / TAU)
     }
 
