@@ -94,6 +94,7 @@ fn agrees_over_more_seeds(experiment: &str, values: &[(&str, &str)], seeds: u64)
         .map(|seed| {
             let checks = run(experiment, seed, values, 1).checks();
             assert!(checks.iter().all(|check| check.passed), "seed {seed}: {checks:?}");
+            println!("{seed}: {:.2?}", checks.iter().filter_map(|check| check.z).collect::<Vec<_>>());
             checks.iter().filter_map(|check| check.z).collect()
         })
         .collect();

@@ -8,6 +8,7 @@ use corpuscle_core::{Axis, Boundary, Contact, Engine, Failure, Invalid, Meeting,
 use corpuscle_event::{EventDriven, Rules};
 use corpuscle_observe::theory;
 
+use super::hydrodynamics::Wave;
 use crate::Settings;
 use crate::gas::{self, Species};
 use crate::replicas::{Member, Watch};
@@ -84,13 +85,20 @@ impl Set {
         rate * libm::exp(0.5 * libm::log(half) + libm::lgamma(half) - libm::lgamma(half + 0.5))
     }
 
-    /// `delta n / n` at a distance from the middle of the push, by linear theory.
-    pub(super) fn density_change(&self, x: f64, time: f64, damping: f64) -> f64 {
+    /// The wave that is `j` times as short as the tube, by linear hydrodynamics.
+    pub(super) fn wave(&self, j: f64) -> Wave {
+        Wave::new(self.packing, self.temperature, j * self.wave_number())
+    }
+
+    /// `delta n / n` against the distance from the middle of the push, by linear hydrodynamics.
+    pub(super) fn density_change(&self, time: f64) -> impl Fn(f64) -> f64 {
         let k = self.wave_number();
-        let mode = |j: f64, share: f64| {
-            share * libm::sin(j * k * x) * libm::sin(j * k * self.speed * time) * libm::exp(-damping * j * j * k * k * time)
+        let amplitude = |j: f64, share: f64| {
+            let [_, density, _] = self.wave(j).samples(time / 64.0, 65);
+            self.push * share * density[64]
         };
-        self.push / self.speed * (mode(1.0, MODES[1]) + mode(2.0, MODES[2]))
+        let (first, second) = (amplitude(1.0, MODES[1]), amplitude(2.0, MODES[2]));
+        move |x| first * libm::sin(k * x) + second * libm::sin(2.0 * k * x)
     }
 }
 
@@ -100,6 +108,8 @@ pub(super) struct Sample {
     /// `sum v_x cos(k x)` and `sum sin(k x)`, `x` counted from the middle of the push.
     pub(super) current: f64,
     pub(super) density: f64,
+    /// `sum (v^2/2 - kT) sin(k x)`.
+    pub(super) heat: f64,
     /// Numbers in each bin.
     pub(super) bins: Vec<f64>,
 }
@@ -120,10 +130,11 @@ pub(super) struct Tube {
     still: Still,
     energies: [f64; 2],
     length: f64,
+    temperature: f64,
     started: f64,
 }
 
-resume!(Tube { values: [engines, samples], set_up: [still, energies, length, started] });
+resume!(Tube { values: [engines, samples], set_up: [still, energies, length, temperature, started] });
 
 impl Tube {
     /// # Errors
@@ -169,7 +180,7 @@ impl Tube {
         };
         let engines = [pushed(1.0), pushed(-1.0)];
         let energies = [engines[0].kinetic_energy(), engines[1].kinetic_energy()];
-        Ok(Self { engines, samples: vec![], still, energies, length: set.length(), started })
+        Ok(Self { engines, samples: vec![], still, energies, length: set.length(), temperature: set.temperature, started })
     }
 
     /// The tube on show.
@@ -219,13 +230,14 @@ impl Member for Tube {
 
     fn sample(&mut self) {
         let (k, middle) = (TAU / self.length, 0.5 * self.length);
-        let mut sample = Sample { current: 0.0, density: 0.0, bins: vec![0.0; BINS] };
+        let mut sample = Sample { current: 0.0, density: 0.0, heat: 0.0, bins: vec![0.0; BINS] };
         for (engine, sign) in self.engines.iter().zip([0.5, -0.5]) {
             for i in 0..engine.particle_count() {
-                let (place, velocity) = (engine.position(i)[0], engine.velocity(i)[0]);
+                let (place, velocity) = (engine.position(i)[0], engine.velocity(i));
                 let (sine, cosine) = libm::sincos(k * (place - middle));
-                sample.current += sign * velocity * cosine;
+                sample.current += sign * velocity[0] * cosine;
                 sample.density += sign * sine;
+                sample.heat += sign * (0.5 * velocity.norm_squared() - self.temperature) * sine;
                 sample.bins[((place / self.length * BINS as f64) as usize).min(BINS - 1)] += sign;
             }
         }
