@@ -9,6 +9,7 @@ pub(crate) mod resume;
 pub(crate) mod run;
 pub(crate) mod schema;
 mod target;
+pub(crate) mod verify;
 pub(crate) mod view;
 
 use clap::Args;

@@ -23,7 +23,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use corpuscle_io::Registry;
 
-use command::{bench, check, lab, list, record, resume, run, schema, view};
+use command::{bench, check, lab, list, record, resume, run, schema, verify, view};
 use trouble::Trouble;
 
 /// A physics laboratory: exact hard-particle dynamics, soft particles, gravity and waves, measured beside theory.
@@ -52,6 +52,8 @@ enum Task {
     Bench(bench::Arguments),
     /// Validate a scenario file and say what it would run, without running it.
     Check(check::Arguments),
+    /// Run experiments over many seeds, and see whether their scores are those of right theory and right error bars.
+    Verify(verify::Arguments),
     /// Print the JSON Schema of scenario files, for editors that complete and check them.
     Schema(schema::Arguments),
 }
@@ -94,6 +96,7 @@ impl Command {
             Some(Task::Record(arguments)) => record::record(arguments, registry),
             Some(Task::Bench(arguments)) => bench::bench(arguments),
             Some(Task::Check(arguments)) => check::check(arguments, registry),
+            Some(Task::Verify(arguments)) => verify::verify(arguments, registry),
             Some(Task::Schema(arguments)) => schema::schema(arguments, registry),
         }
     }

@@ -64,6 +64,46 @@ pub(crate) fn add<const D: usize>(
     Ok(())
 }
 
+/// Adds a species at rest, each particle at the first place of `draw` that is clear of all particles there already.
+///
+/// # Errors
+/// When no clear place is found in many draws.
+pub(crate) fn scatter<const D: usize>(
+    particles: &mut Particles<D>,
+    region: &Boundary<D>,
+    species: Species,
+    mut draw: impl FnMut() -> Vector<D>,
+) -> Result<(), Invalid> {
+    const DRAWS: usize = 10_000;
+    let Species { count, radius, mass, index } = species;
+    for _ in 0..count {
+        let clear = |site: &Vector<D>| {
+            let taken = particles.position.iter().zip(&particles.radius);
+            !taken.into_iter().any(|(&r, &other)| region.displacement(*site, r).norm() < radius + other)
+        };
+        let site = (0..DRAWS).map(|_| draw()).find(clear);
+        let site = site.ok_or_else(|| Invalid::new("particles", count, "fewer, or a thinner gas: no free place was found"))?;
+        particles.push(site, Vector::ZERO, mass, radius, index);
+    }
+    Ok(())
+}
+
+/// Adds particles of radius 1/2 and mass 1 at rest, densely and without order, into an empty box: spheres that have grown.
+///
+/// # Errors
+/// When they jam before they have their size.
+pub(crate) fn grow<const D: usize>(
+    particles: &mut Particles<D>,
+    region: &Boundary<D>,
+    count: usize,
+    random: &mut Random,
+) -> Result<(), Invalid> {
+    for place in corpuscle_event::grown(region, &vec![0.5; count], 0.05, random)? {
+        particles.push(place, Vector::ZERO, 1.0, 0.5, 0);
+    }
+    Ok(())
+}
+
 /// Gives every particle a velocity from Maxwell's distribution, then scales all of them so that the kinetic temperature
 /// `2 E / (D N)` is exactly `temperature`: a start between walls, which conserve energy but not momentum, so that all
 /// `D N` degrees of freedom count. In a periodic box use [`maxwell`] with `exact`, which has `D (N - 1)`.

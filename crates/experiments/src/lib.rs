@@ -12,6 +12,7 @@ mod hand;
 mod horizon;
 pub mod parameter;
 mod peek;
+mod replicas;
 pub mod simulation;
 mod tally;
 
@@ -45,6 +46,12 @@ pub static REGISTRY: &[&Experiment] = &[
     &experiments::ideal_gas::EXPERIMENT,
     &experiments::three_body::EXPERIMENT,
     &experiments::wave::EXPERIMENT,
+    &experiments::atmosphere::EXPERIMENT,
+    &experiments::billiard::EXPERIMENT,
+    &experiments::newton_cradle::EXPERIMENT,
+    &experiments::granular::EXPERIMENT,
+    &experiments::sound::EXPERIMENT,
+    &experiments::lennard_jones::EXPERIMENT,
 ];
 
 /// The experiment of this name.

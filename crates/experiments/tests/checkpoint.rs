@@ -57,6 +57,11 @@ fn every_experiment() {
             "entropy" => (&[("replicas", "3"), ("particles", "60"), ("reverse_at", "4")], 1.0),
             "ideal-gas" => (&[("particles", "60"), ("replicas", "3"), ("duration", "30")], 1.0),
             "three-body" => (&[("preset", "lagrange")], 0.3),
+            "atmosphere" => (&[("replicas", "2"), ("particles", "40"), ("heavy_particles", "20"), ("duration", "12")], 1.0),
+            "billiard" => (&[("replicas", "2"), ("scatterers", "20"), ("particles", "5"), ("duration", "8")], 1.0),
+            "lennard-jones" => (&[("particles", "256"), ("duration", "6")], 1.0),
+            "granular" => (&[("replicas", "2"), ("particles", "50"), ("crowd", "100"), ("duration", "5")], 1.0),
+            "sound" => (&[("replicas", "3"), ("particles", "100"), ("duration", "0.6")], 1.0),
             _ => (&[], 1.0),
         };
         experiment(name, values, share);
@@ -68,6 +73,8 @@ fn other_settings() {
     experiment("brownian", &[("replicas", "2"), ("particles", "60"), ("dimension", "3"), ("duration", "12")], 1.0);
     experiment("three-body", &[("preset", "pythagorean"), ("integrator", "velocity-verlet")], 0.1);
     experiment("wave", &[("start", "drive")], 0.5);
+    experiment("newton-cradle", &[("masses", "1,3,0.5,2"), ("lifted", "1"), ("restitution", "0.8")], 1.0);
+    experiment("atmosphere", &[("replicas", "2"), ("particles", "20"), ("floor", "insulating"), ("duration", "12")], 1.0);
 }
 
 #[test]

@@ -21,6 +21,7 @@ pub mod msd;
 pub mod pressure;
 pub mod radial_distribution;
 pub mod schedule;
+pub mod scores;
 pub mod spectrum;
 pub mod speeds;
 pub mod theory;

@@ -45,6 +45,26 @@ pub fn reduced_compressibility<const D: usize>(packing: f64) -> f64 {
     }
 }
 
+/// Excess chemical potential over `k T` of the fluid, `int_0^eta (Z - 1)/eta d eta + Z - 1`: by the equations of state of
+/// [`compressibility`], `-(7/8) ln(1 - eta) + (9/8) eta/(1 - eta) + Z - 1` in 2-D and
+/// `(4 eta - 3 eta^2)/(1 - eta)^2 + Z - 1` in 3-D.
+pub fn excess_chemical_potential<const D: usize>(packing: f64) -> f64 {
+    let (eta, free) = (packing, 1.0 - packing);
+    let energy = match const { two_or_three::<D>() } {
+        2 => -7.0 / 8.0 * libm::log1p(-eta) + 9.0 / 8.0 * eta / free,
+        _ => (4.0 * eta - 3.0 * eta * eta) / (free * free),
+    };
+    energy + compressibility::<D>(eta) - 1.0
+}
+
+/// Speed of sound `c = sqrt((dP/d rho)_S)` in the fluid: `c^2 = (kT/m) (d(eta Z)/d eta + (2/D) Z^2)`, since
+/// `(dP/d rho)_S = (dP/d rho)_T + T (dP/dT)^2 / (rho^2 c_V)` with `P = n kT Z(eta)` and `c_V = D k/(2 m)`. An ideal gas has
+/// `c^2 = (1 + 2/D) kT/m`.
+pub fn speed_of_sound<const D: usize>(packing: f64, temperature: f64, mass: f64) -> f64 {
+    let z = compressibility::<D>(packing);
+    (temperature / mass * (1.0 / reduced_compressibility::<D>(packing) + 2.0 / D as f64 * z * z)).sqrt()
+}
+
 /// Collisions a particle suffers per time in a gas of one species, Enskog: `2 n s chi sqrt(pi kT/m)` in 2-D,
 /// `4 n s^2 chi sqrt(pi kT/m)` in 3-D (Chapman and Cowling, The Mathematical Theory of Non-uniform Gases, chapter 16).
 /// It is exact in equilibrium, given the true contact value.
@@ -110,6 +130,29 @@ mod tests {
             assert!((reduced_compressibility::<2>(eta) * slope2 - 1.0).abs() < 1e-7, "{eta}");
             assert!((reduced_compressibility::<3>(eta) * slope3 - 1.0).abs() < 1e-7, "{eta}");
         }
+    }
+
+    /// Gibbs and Duhem: `d mu = dP / n`, so that the slope of the whole chemical potential is `1 / (eta chi_T)`.
+    #[test]
+    fn chemical_potential_and_pressure_fulfil_gibbs_and_duhem() {
+        let h = 1e-5;
+        for eta in [0.01, 0.1, 0.3, 0.45] {
+            let flat = (excess_chemical_potential::<2>(eta + h) - excess_chemical_potential::<2>(eta - h)) / (2.0 * h);
+            let round = (excess_chemical_potential::<3>(eta + h) - excess_chemical_potential::<3>(eta - h)) / (2.0 * h);
+            assert!((flat + 1.0 / eta - 1.0 / (eta * reduced_compressibility::<2>(eta))).abs() < 1e-5 * flat, "{eta}");
+            assert!((round + 1.0 / eta - 1.0 / (eta * reduced_compressibility::<3>(eta))).abs() < 1e-5 * round, "{eta}");
+        }
+    }
+
+    /// An adiabat: along `d ln T / d ln rho = (2/D) Z` the pressure changes by `c^2 d rho`.
+    #[test]
+    fn sound_is_the_slope_of_the_adiabat() {
+        let (eta, h) = (0.3, 1e-5);
+        let temperature = |eta_at: f64| (2.0 / 3.0 * compressibility::<3>(eta) * (eta_at / eta - 1.0)) + 1.0;
+        let pressure = |eta: f64| eta * compressibility::<3>(eta) * temperature(eta);
+        let slope = (pressure(eta + h) - pressure(eta - h)) / (2.0 * h);
+        assert!((speed_of_sound::<3>(eta, 1.0, 1.0).powi(2) / slope - 1.0).abs() < 1e-7);
+        assert!((speed_of_sound::<2>(0.0, 1.5, 2.0).powi(2) - 1.5).abs() < 1e-14);
     }
 
     /// Virial coefficients known exactly: `Z = 1 + 2 eta + 3.128 eta^2` in 2-D (`B_3/B_2^2 = 4/3 - sqrt3/pi`), and

@@ -1,0 +1,107 @@
+//! The experiments beyond the paper against theory, over seeds.
+
+mod common;
+
+use common::{agrees_over_seeds, checks_on, refused, run};
+
+/// Everything the run of one experiment says does not depend on where it stops or on how many threads there are.
+fn repeats(experiment: &str, values: &[(&str, &str)]) {
+    let whole = run(experiment, 3, values, 3).checks();
+    assert_eq!(whole, run(experiment, 3, values, 29).checks(), "stops");
+    assert_eq!(whole, checks_on(1, experiment, 3, values), "one thread");
+    assert!(!whole.is_empty());
+}
+
+#[test]
+fn atmosphere() {
+    agrees_over_seeds("atmosphere", &[("replicas", "8"), ("duration", "30")]);
+    repeats("atmosphere", &[("replicas", "3"), ("duration", "12")]);
+    assert_eq!(refused("atmosphere", &[("gravity", "1")]), "gravity");
+}
+
+#[test]
+fn atmosphere_of_spheres_over_an_insulating_floor() {
+    let few = [("particles", "60"), ("heavy_particles", "40"), ("duration", "20"), ("replicas", "8")];
+    agrees_over_seeds("atmosphere", &[&[("dimension", "3"), ("floor", "insulating")][..], &few].concat());
+}
+
+#[test]
+fn billiard() {
+    agrees_over_seeds("billiard", &[("replicas", "16")]);
+    repeats("billiard", &[("replicas", "3"), ("duration", "10")]);
+    assert_eq!(refused("billiard", &[("coverage", "0.5")]), "coverage");
+}
+
+#[test]
+fn billiards_of_sinai() {
+    for layout in ["square", "triangular"] {
+        agrees_over_more_seeds("billiard", &[("layout", layout), ("coverage", "0.3"), ("replicas", "12")], 24);
+    }
+}
+
+/// Nothing is left to chance: exact rules, with bounds of rounding and of the gap.
+#[test]
+fn newton_cradle() {
+    for values in [
+        &[][..],
+        &[("balls", "7"), ("lifted", "3")],
+        &[("lifted", "1"), ("restitution", "0.9"), ("duration", "200")],
+        &[("masses", "8,4,2,1"), ("lifted", "1")],
+        &[("masses", "1,3,0.5,2"), ("lifted", "1"), ("restitution", "0.8")],
+    ] {
+        let checks = run("newton-cradle", 1, values, 7).checks();
+        assert!(checks.len() >= 2);
+        for check in checks {
+            println!("{check:?}");
+            assert!(check.passed, "{check:?}");
+        }
+    }
+    repeats("newton-cradle", &[("restitution", "0.95")]);
+    assert_eq!(refused("newton-cradle", &[("lifted", "5")]), "lifted");
+}
+
+#[test]
+fn granular() {
+    agrees_over_more_seeds("granular", &[("crowd", "50"), ("replicas", "24")], 16);
+    repeats("granular", &[("replicas", "3"), ("duration", "5"), ("crowd", "200")]);
+    assert_eq!(refused("granular", &[("restitution", "1")]), "restitution");
+}
+
+#[test]
+fn granular_spheres() {
+    let few = [("particles", "100"), ("crowd", "50"), ("replicas", "8"), ("duration", "5")];
+    agrees_over_more_seeds("granular", &[&[("dimension", "3"), ("restitution", "0.9")][..], &few].concat(), 16);
+}
+
+/// One agreement each of three kinds a run: fewer scores than the others, over more seeds.
+#[test]
+fn sound() {
+    agrees_over_more_seeds("sound", &[("replicas", "12"), ("particles", "400")], 16);
+    repeats("sound", &[("replicas", "3"), ("particles", "100"), ("duration", "0.6")]);
+    assert_eq!(refused("sound", &[("packing_fraction", "0.7")]), "packing_fraction");
+}
+
+#[test]
+fn lennard_jones() {
+    agrees_over_more_seeds("lennard-jones", &[("duration", "30")], 14);
+    repeats("lennard-jones", &[("state", "gas"), ("particles", "256"), ("duration", "6")]);
+    assert_eq!(refused("lennard-jones", &[("state", "solid")]), "state");
+}
+
+/// As `agrees_over_seeds`, with as many seeds as it takes for few checks.
+fn agrees_over_more_seeds(experiment: &str, values: &[(&str, &str)], seeds: u64) {
+    let runs: Vec<Vec<f64>> = (1..=seeds)
+        .map(|seed| {
+            let checks = run(experiment, seed, values, 1).checks();
+            assert!(checks.iter().all(|check| check.passed), "seed {seed}: {checks:?}");
+            println!("{seed}: {:.2?}", checks.iter().filter_map(|check| check.z).collect::<Vec<_>>());
+            checks.iter().filter_map(|check| check.z).collect()
+        })
+        .collect();
+    let scores: Vec<f64> = runs.iter().flatten().copied().collect();
+    let n = scores.len() as f64;
+    assert!(n >= 40.0, "only {n} scores");
+    let (mean, square) = (scores.iter().sum::<f64>() / n, scores.iter().map(|z| z * z).sum::<f64>() / n);
+    println!("{n} scores: mean {mean:.3}, mean square {square:.3}");
+    assert!(mean.abs() * n.sqrt() < 4.0 && (square - 1.0).abs() < 4.0 * (2.0 / n).sqrt(), "mean {mean}, mean square {square}");
+}
