@@ -74,6 +74,7 @@ impl<const D: usize> TimeDriven<D> {
                 self.system.held.push(Held::new(pin.particle, axis, None, self.time, &self.system.particles)?);
             }
         }
+        self.system.held.sort_by_key(|held| held.particle);
         self.restart()?;
         Ok(self)
     }
@@ -90,6 +91,7 @@ impl<const D: usize> TimeDriven<D> {
             let signal = Some(drive.signal);
             self.system.held.push(Held::new(drive.particle, drive.axis, signal, self.time, &self.system.particles)?);
         }
+        self.system.held.sort_by_key(|held| held.particle);
         self.restart()?;
         Ok(self)
     }
@@ -305,8 +307,7 @@ impl<const D: usize> TimeDriven<D> {
         let (start, end) = (self.steps as f64 * dt, (self.steps + 1) as f64 * dt);
         let (stepper, system) = (&mut self.stepper, &mut self.system);
         if threads::are_worth_it(system.particles.len()) {
-            // Into the pool once a step, not once a pass.
-            rayon::scope(|_| stepper.step(system, start, end, dt))?;
+            threads::kept_awake(|| stepper.step(system, start, end, dt))?;
         } else {
             stepper.step(system, start, end, dt)?;
         }
@@ -318,7 +319,7 @@ impl<const D: usize> TimeDriven<D> {
 
     /// Does the kick that the last step put off.
     fn settle(&mut self) -> Result<(), Failure> {
-        self.system.settle();
+        self.system.settle(self.time);
         self.system.check(self.time)
     }
 }

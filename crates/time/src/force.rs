@@ -107,6 +107,11 @@ pub trait Force<const D: usize>: Send {
         None
     }
 
+    /// The springs, where the force is springs and nothing else; only then can particles be moved while accelerations are found.
+    fn springs(&self) -> Option<&Springs> {
+        None
+    }
+
     /// The longest step of an adaptive integrator that cannot miss what the force does by itself as time passes.
     fn longest_step(&self) -> f64 {
         f64::INFINITY

@@ -104,30 +104,53 @@ pub(crate) fn kick<const D: usize>(velocity: &mut [Vector<D>], acceleration: &[V
     }
 }
 
+/// Lengths of kicks and of a drift.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moves {
+    /// The kick put off before.
+    pub(crate) owed: Option<f64>,
+    pub(crate) kick: f64,
+    pub(crate) drift: f64,
+}
+
 /// `v += a owed` if anything is, `v += a kick`, then `r += v drift` for all; tells whether every `v` was finite before the second,
 /// and whether every `r` is.
 pub(crate) fn kick_and_drift<const D: usize>(
     position: &mut [Vector<D>],
     velocity: &mut [Vector<D>],
     acceleration: &[Vector<D>],
-    owed: Option<f64>,
-    [kick, drift]: [f64; 2],
+    moves: Moves,
 ) -> [bool; 2] {
-    let instructions = Instructions::detect();
-    let one = |((position, velocity), acceleration): ((&mut [Vector<D>], &mut [Vector<D>]), &[Vector<D>])| {
+    if threads::are_worth_it(position.len()) {
+        let chunks = position.par_chunks_mut(CHUNK).zip(velocity.par_chunks_mut(CHUNK)).zip(acceleration.par_chunks(CHUNK));
+        let one = |((position, velocity), acceleration)| moves.apply(position, velocity, acceleration);
+        chunks.map(one).reduce(|| [true; 2], both)
+    } else {
+        moves.apply(position, velocity, acceleration)
+    }
+}
+
+impl Moves {
+    /// For some particles, on this thread; tells what [`kick_and_drift`] does.
+    pub(crate) fn apply<const D: usize>(
+        self,
+        position: &mut [Vector<D>],
+        velocity: &mut [Vector<D>],
+        acceleration: &[Vector<D>],
+    ) -> [bool; 2] {
+        let Self { owed, kick, drift } = self;
         let (position, velocity) = (Vector::components_mut(position), Vector::components_mut(velocity));
-        let acceleration = Vector::components(acceleration);
+        let (acceleration, instructions) = (Vector::components(acceleration), Instructions::detect());
         match owed {
             Some(owed) => instructions.run(KickAndDrift::<true> { position, velocity, acceleration, owed, kick, drift }),
             None => instructions.run(KickAndDrift::<false> { position, velocity, acceleration, owed: 0.0, kick, drift }),
         }
-    };
-    if threads::are_worth_it(position.len()) {
-        let chunks = position.par_chunks_mut(CHUNK).zip(velocity.par_chunks_mut(CHUNK)).zip(acceleration.par_chunks(CHUNK));
-        chunks.map(one).reduce(|| [true; 2], |a, b| [a[0] && b[0], a[1] && b[1]])
-    } else {
-        one(((position, velocity), acceleration))
     }
+}
+
+/// Whether what is true of some particles and of others is true of both.
+pub(crate) fn both(one: [bool; 2], other: [bool; 2]) -> [bool; 2] {
+    [one[0] && other[0], one[1] && other[1]]
 }
 
 /// Brings a position into the primary box and counts the faces it went through.

@@ -6,8 +6,8 @@ use corpuscle_core::{Axis, Boundary, Contact, Failure, Invalid, Meeting, Particl
 use rayon::prelude::*;
 
 use crate::constraint::Held;
-use crate::force::Force;
-use crate::motion;
+use crate::force::{Force, Springs};
+use crate::motion::{self, Moves};
 use crate::threads::{self, CHUNK};
 
 /// State and forces. Scratch arrays live beside what uses them.
@@ -17,6 +17,7 @@ pub(crate) struct System<const D: usize> {
     /// How often each particle went through the upper minus the lower face of a periodic axis.
     pub(crate) images: Vec<[i64; D]>,
     pub(crate) forces: Vec<Box<dyn Force<D>>>,
+    /// In the order of their particles.
     pub(crate) held: Vec<Held>,
     /// Accelerations; those of the present positions when `fresh`.
     pub(crate) acceleration: Vec<Vector<D>>,
@@ -150,10 +151,14 @@ impl<const D: usize> System<D> {
         self.doubtful |= !motion::kick(&mut self.particles.velocity, &self.acceleration, dt);
     }
 
-    /// The same, put off until the next [`kick_and_drift`](Self::kick_and_drift) or [`settle`](Self::settle): the last kick of a
-    /// step and the first of the next are by the same accelerations, and one pass over the memory does both.
-    pub(crate) fn owe_kick(&mut self, dt: f64) {
-        self.owed = Some(dt);
+    /// [`accelerate`](Self::accelerate), and the [`kick`](Self::kick), put off until the next [`advance`](Self::advance) or
+    /// [`settle`](Self::settle): the last kick of a step and the first of the next are by the same accelerations, and one pass over the
+    /// memory does both, or finds the accelerations, too.
+    pub(crate) fn owe_kick(&mut self, time: f64, lag: f64, kick: f64) {
+        if sweeping(&self.forces).is_none() {
+            self.accelerate(time, lag);
+        }
+        self.owed = Some(kick);
     }
 
     /// Drops what was put off.
@@ -162,18 +167,34 @@ impl<const D: usize> System<D> {
     }
 
     /// Does what was put off.
-    pub(crate) fn settle(&mut self) {
+    pub(crate) fn settle(&mut self, time: f64) {
         if let Some(owed) = self.owed.take() {
+            self.accelerate(time, 0.0);
             self.kick(owed);
         }
+    }
+
+    /// [`accelerate`](Self::accelerate), then [`kick_and_drift`](Self::kick_and_drift), in one sweep where that can be.
+    pub(crate) fn advance(&mut self, time: f64, lag: f64, kick: f64, drift: f64) -> bool {
+        let owed = self.owed;
+        if !self.fresh
+            && let Some(springs) = sweeping(&self.forces)
+        {
+            let [before, now] = springs.sweep(&self.boundary, &mut self.particles, &self.held, Moves { owed, kick, drift });
+            self.owed = None;
+            self.doubtful |= !(before && now);
+            return before;
+        }
+        self.accelerate(time, lag);
+        self.kick_and_drift(kick, drift)
     }
 
     /// `v += a kick`, then `r += v drift`, in one pass. Tells whether the kick put off before, if there was one, left every
     /// velocity a finite number.
     pub(crate) fn kick_and_drift(&mut self, kick: f64, drift: f64) -> bool {
+        let moves = Moves { owed: self.owed.take(), kick, drift };
         let Particles { position, velocity, .. } = &mut self.particles;
-        let owed = self.owed.take();
-        let [before, now] = motion::kick_and_drift(position, velocity, &self.acceleration, owed, [kick, drift]);
+        let [before, now] = motion::kick_and_drift(position, velocity, &self.acceleration, moves);
         self.doubtful |= !(before && now);
         self.fresh = false;
         before
@@ -296,4 +317,10 @@ impl<const D: usize> System<D> {
             Err(Failure { time, particle: Some(i), cause })
         })
     }
+}
+
+/// The springs whose accelerations are found, used and forgotten in one sweep over the memory, where they are all there is.
+fn sweeping<const D: usize>(forces: &[Box<dyn Force<D>>]) -> Option<&Springs> {
+    let [force] = forces else { return None };
+    force.springs().filter(|springs| springs.can_sweep())
 }

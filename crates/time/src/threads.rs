@@ -1,10 +1,46 @@
 //! When several threads are worth the waiting for the last of them.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use rayon::Yield;
+
 /// Particles a thread moves at a time.
 pub(crate) const CHUNK: usize = 2048;
+/// How long a thread looks for work before it may fall asleep: about as long as one needs to wake.
+const PATIENCE: Duration = Duration::from_micros(50);
 
-/// Whether simple passes over so many particles should be shared among threads: to wake one takes as long as to move some
-/// ten thousand.
+/// Whether simple passes over so many particles should be shared among threads that are awake.
 pub(crate) fn are_worth_it(particles: usize) -> bool {
-    particles >= 12 * CHUNK && rayon::current_num_threads() > 1
+    particles >= 4 * CHUNK && rayon::current_num_threads() > 1
+}
+
+/// Does work of many short passes by the threads of the pool, which look for their shares of the next one without falling asleep
+/// in between. A thread whose processor somebody else needs gives way; what it would have done is done by the others.
+pub(crate) fn kept_awake<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    let done = AtomicBool::new(false);
+    rayon::scope(|scope| {
+        let (home, done) = (rayon::current_thread_index(), &done);
+        for _ in 1..rayon::current_num_threads() {
+            scope.spawn(move |_| look_for_work(home, done));
+        }
+        let result = work();
+        done.store(true, Ordering::Relaxed);
+        result
+    })
+}
+
+/// Until there has been none for a while; not the thread `home`, which may take this up, too, while it waits for a share's end.
+fn look_for_work(home: Option<usize>, done: &AtomicBool) {
+    if rayon::current_thread_index() == home {
+        return;
+    }
+    let mut last = Instant::now();
+    while !done.load(Ordering::Relaxed) && last.elapsed() < PATIENCE {
+        if rayon::yield_now() == Some(Yield::Executed) {
+            last = Instant::now();
+        } else {
+            std::thread::yield_now();
+        }
+    }
 }

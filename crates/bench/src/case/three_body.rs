@@ -1,17 +1,21 @@
 //! The figure-eight of three equal masses, to rounding.
 
 use corpuscle_core::{Axis, Boundary, Engine, Particles, Vector};
-use corpuscle_experiments::Settings;
+use corpuscle_experiments::{Parameter, Settings};
 use corpuscle_observe::Drift;
 use corpuscle_time::{Gravity, Integrator, TimeDriven};
 
-use crate::{Case, Clock, Figure, SECONDS, Trouble};
+use crate::threads::in_pool;
+use crate::{Case, Clock, Figure, SECONDS, THREADS, Trouble};
 
 pub(crate) static CASE: Case = Case {
     name: "three-body",
     summary: "The figure-eight of three masses by Gauss-Radau of order 15: seconds per 1000 periods, at the error of rounding.",
-    parameters: &[SECONDS],
-    run,
+    parameters: &[
+        Parameter { help: "Threads there are; three bodies are too few to share, and one of them does the work.", ..THREADS },
+        SECONDS,
+    ],
+    run: |settings| in_pool(settings, || run(settings)),
 };
 
 /// Period of the orbit (Chenciner and Montgomery 2000, doi:10.2307/2661357; numbers by Simo).

@@ -3,10 +3,11 @@
 use corpuscle_core::{Axis, Boundary, Instructions, Invalid, Particles, Vector};
 
 mod run;
+mod sweep;
 
 use super::{Force, Tensor, add_product, finite, massive, not_negative};
 use crate::image::NearestImage;
-use run::{Run, Stretch};
+use run::{Place, Run, Stretch};
 
 /// A spring, with a dashpot beside it.
 ///
@@ -66,6 +67,11 @@ impl Spring {
         self.quadratic == 0.0 && self.cubic == 0.0
     }
 
+    /// Whether the force is `-k r`, component by component.
+    fn is_linear(&self) -> bool {
+        self.rest_length == 0.0 && self.damping == 0.0 && self.obeys_hooke()
+    }
+
     /// Friction on the second particle, which moves at `v` relative to the first.
     #[inline]
     fn friction<const D: usize>(&self, r: Vector<D>, v: Vector<D>) -> Vector<D> {
@@ -76,6 +82,11 @@ impl Spring {
     }
 }
 
+/// Springs whose first ends are within one block of so many particles are handled together: what is written stays in a cache near the
+/// processor meanwhile, the nearest where there is little to work out.
+const NEAR: usize = 2048;
+const NEAR_LINEAR: usize = 256;
+
 /// Any number of springs.
 ///
 /// Springs alike whose ends follow one another, as those of a chain or of the rows of a membrane, are found and handled
@@ -83,20 +94,65 @@ impl Spring {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Springs {
     given: Vec<Spring>,
+    /// Particles of a block.
+    near: usize,
     runs: Vec<Run>,
+    /// Where the runs of each block of first ends begin, and the last ends.
+    blocks: Vec<usize>,
+    /// The farthest apart in memory that two ends are.
+    reach: usize,
+    damped: bool,
     instructions: Instructions,
 }
 
 impl Springs {
     /// A network of springs.
     pub fn new(springs: Vec<Spring>) -> Self {
-        let runs = Run::all(&springs);
-        Self { given: springs, runs, instructions: Instructions::detect() }
+        let near = if springs.iter().all(Spring::is_linear) { NEAR_LINEAR } else { NEAR };
+        let runs = Run::all(&springs, near);
+        let last = runs.last().map_or(0, |run| run.first() / near + 1);
+        let blocks = (0..=last).map(|block| runs.partition_point(|run| run.first() / near < block)).collect();
+        let reach = runs.iter().map(Run::reach).max().unwrap_or(0);
+        let damped = springs.iter().any(|spring| spring.damping != 0.0);
+        Self { given: springs, near, runs, blocks, reach, damped, instructions: Instructions::detect() }
     }
 
     /// The springs.
     pub fn springs(&self) -> &[Spring] {
         &self.given
+    }
+
+    /// The runs with first ends in a block.
+    fn block(&self, block: usize) -> &[Run] {
+        self.blocks.get(block..block + 2).map_or(&[], |ends| &self.runs[ends[0]..ends[1]])
+    }
+
+    /// Adds the accelerations by some runs, one after the other.
+    fn stretch<const D: usize>(&self, runs: &[Run], boundary: &Boundary<D>, place: Place<'_, D>) {
+        let image = NearestImage::new(boundary);
+        let periodic = boundary.axes.contains(&Axis::Periodic).then_some(image);
+        let Place { from, position, velocity, mass, alike, acceleration } = place;
+        for run in runs {
+            if !run.is_short() {
+                let alike = alike.filter(|_| periodic.is_none());
+                match run.line(Place { from, position, velocity, mass, alike, acceleration: &mut *acceleration }) {
+                    // Of what wider vectors would read, most is not aligned to them.
+                    Ok(line) => self.instructions.without_avx512().run(line),
+                    Err(place) => self.instructions.run(Stretch { run, image: periodic, place }),
+                }
+                continue;
+            }
+            for spring in run.springs() {
+                let (first, second) = (spring.first - from, spring.second - from);
+                let r = image.displacement(position[first], position[second]);
+                let mut force = spring.elastic(r);
+                if spring.damping != 0.0 {
+                    force += spring.friction(r, velocity[second] - velocity[first]);
+                }
+                acceleration[first] -= force * (1.0 / mass[first]);
+                acceleration[second] += force * (1.0 / mass[second]);
+            }
+        }
     }
 
     fn arrows<'a, const D: usize>(
@@ -111,30 +167,26 @@ impl Springs {
     }
 }
 
+/// The mass of all particles, where it is the same.
+fn alike(mass: &[f64]) -> Option<f64> {
+    let (first, all) = (*mass.first()?, mass.chunks(256));
+    let differ = |chunk: &[f64]| chunk.iter().fold(0, |bits, mass| bits | (mass.to_bits() ^ first.to_bits())) != 0;
+    (!all.into_iter().any(differ)).then_some(first)
+}
+
 impl<const D: usize> Force<D> for Springs {
     fn name(&self) -> &'static str {
         "springs"
     }
 
     fn accelerate(&mut self, _: f64, boundary: &Boundary<D>, particles: &Particles<D>, acceleration: &mut [Vector<D>]) {
-        let image = NearestImage::new(boundary);
-        let periodic = boundary.axes.contains(&Axis::Periodic).then_some(image);
-        for run in &self.runs {
-            if !run.is_short() {
-                self.instructions.run(Stretch { run, image: periodic, particles, acceleration });
-                continue;
-            }
-            let Particles { position, velocity, mass, .. } = particles;
-            for spring in run.springs() {
-                let r = image.displacement(position[spring.first], position[spring.second]);
-                let mut force = spring.elastic(r);
-                if spring.damping != 0.0 {
-                    force += spring.friction(r, velocity[spring.second] - velocity[spring.first]);
-                }
-                acceleration[spring.first] -= force * (1.0 / mass[spring.first]);
-                acceleration[spring.second] += force * (1.0 / mass[spring.second]);
-            }
-        }
+        let Particles { position, velocity, mass, .. } = particles;
+        let place = Place { from: 0, position, velocity, mass, alike: alike(mass), acceleration };
+        self.stretch(&self.runs, boundary, place);
+    }
+
+    fn springs(&self) -> Option<&Springs> {
+        Some(self)
     }
 
     fn energy(&self, _: f64, boundary: &Boundary<D>, particles: &Particles<D>) -> f64 {
@@ -175,7 +227,7 @@ impl<const D: usize> Force<D> for Springs {
     }
 
     fn depends_on_velocity(&self) -> bool {
-        self.given.iter().any(|spring| spring.damping != 0.0)
+        self.damped
     }
 }
 

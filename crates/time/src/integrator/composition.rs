@@ -94,13 +94,13 @@ pub(crate) fn step<const D: usize>(
     let (mut drifted, mut kicked) = (0.0, 0.0);
     let mut time = start;
     for (number, stage) in stages.iter().enumerate() {
-        system.accelerate(time, (drifted - kicked) * dt);
+        let lag = (drifted - kicked) * dt;
         kicked += stage.kick;
         if stage.drift == 0.0 {
-            system.owe_kick(stage.kick * dt);
+            system.owe_kick(time, lag, stage.kick * dt);
             continue;
         }
-        if !system.kick_and_drift(stage.kick * dt, stage.drift * dt) {
+        if !system.advance(time, lag, stage.kick * dt, stage.drift * dt) {
             system.check(start)?;
         }
         drifted += stage.drift;

@@ -1,15 +1,15 @@
 //! Springs alike between neighbours in memory.
 
+use corpuscle_core::Vector;
 use corpuscle_core::instructions::Kernel;
-use corpuscle_core::{Particles, Vector};
 
 use super::Spring;
 use crate::image::NearestImage;
 
-/// First ends within one block of so many particles are handled together: what is written stays in the cache meanwhile.
-const NEAR: usize = 2048;
 /// Springs stretched together.
 const BLOCK: usize = 64;
+/// Runs below this length are handled spring by spring.
+const SHORT: usize = 8;
 
 /// Springs like `spring` between the particles `first + n` and `second + n`, `n = 0..count`, `first < second`.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,22 +19,33 @@ pub(super) struct Run {
 }
 
 impl Run {
-    /// All springs, as runs: block by block of their first ends, then by how far apart the ends are.
-    pub(super) fn all(springs: &[Spring]) -> Vec<Self> {
+    /// All springs, as runs: block by block of `near` particles their first ends are in, then by how far apart the ends are. No run
+    /// has first ends in two blocks.
+    pub(super) fn all(springs: &[Spring], near: usize) -> Vec<Self> {
         let upwards = |spring: &Spring| {
             let (first, second) = (spring.first.min(spring.second), spring.first.max(spring.second));
             Spring { first, second, ..*spring }
         };
         let mut sorted: Vec<Spring> = springs.iter().map(upwards).collect();
-        sorted.sort_by_key(|spring| (spring.first / NEAR, spring.second - spring.first, spring.first));
+        sorted.sort_by_key(|spring| (spring.first / near, spring.second - spring.first, spring.first));
         let mut runs: Vec<Self> = vec![];
         for spring in sorted {
             match runs.last_mut() {
-                Some(run) if run.nth(run.count) == spring => run.count += 1,
+                Some(run) if run.nth(run.count) == spring && run.first() / near == spring.first / near => run.count += 1,
                 _ => runs.push(Self { spring, count: 1 }),
             }
         }
         runs
+    }
+
+    /// The first of its first ends.
+    pub(super) fn first(&self) -> usize {
+        self.spring.first
+    }
+
+    /// How far apart in memory its ends are.
+    pub(super) fn reach(&self) -> usize {
+        self.spring.second - self.spring.first
     }
 
     /// The springs one by one.
@@ -48,13 +59,36 @@ impl Run {
 
     /// Whether it is too short for [`Stretch`] to be worth preparing.
     pub(super) fn is_short(&self) -> bool {
-        self.count < BLOCK / 8
+        self.count < SHORT
     }
 
-    /// Whether forces are `-k r`, component by component.
-    fn is_linear(&self) -> bool {
-        self.spring.rest_length == 0.0 && self.spring.damping == 0.0 && self.spring.obeys_hooke()
+    /// What adds the accelerations where forces are `-k r`, component by component, and all masses are alike.
+    pub(super) fn line<'a, const D: usize>(&self, place: Place<'a, D>) -> Result<Line<'a>, Place<'a, D>> {
+        let Self { spring, count } = self;
+        let Some(mass) = place.alike.filter(|_| spring.is_linear()) else { return Err(place) };
+        let start = (spring.first - place.from) * D;
+        Ok(Line {
+            stiffness: spring.stiffness,
+            inverse_mass: 1.0 / mass,
+            reach: self.reach() * D,
+            count: count * D,
+            position: &Vector::components(place.position)[start..],
+            acceleration: &mut Vector::components_mut(place.acceleration)[start..],
+        })
     }
+}
+
+/// The particles of a stretch of memory, and what their accelerations are added to.
+pub(super) struct Place<'a, const D: usize> {
+    /// Index of the first.
+    pub(super) from: usize,
+    pub(super) position: &'a [Vector<D>],
+    /// Read where there is friction.
+    pub(super) velocity: &'a [Vector<D>],
+    pub(super) mass: &'a [f64],
+    /// The mass of all particles, where it is the same.
+    pub(super) alike: Option<f64>,
+    pub(super) acceleration: &'a mut [Vector<D>],
 }
 
 /// Adds the accelerations by a run of springs.
@@ -62,8 +96,7 @@ pub(super) struct Stretch<'a, const D: usize> {
     pub(super) run: &'a Run,
     /// Nearest images, where there is a periodic axis.
     pub(super) image: Option<NearestImage<D>>,
-    pub(super) particles: &'a Particles<D>,
-    pub(super) acceleration: &'a mut [Vector<D>],
+    pub(super) place: Place<'a, D>,
 }
 
 impl<const D: usize> Kernel for Stretch<'_, D> {
@@ -71,34 +104,79 @@ impl<const D: usize> Kernel for Stretch<'_, D> {
 
     #[inline(always)]
     fn run(self) {
-        let Self { run: Run { spring, count }, image, particles: Particles { position, velocity, mass, .. }, acceleration } = self;
-        let plain = self.run.is_linear() && image.is_none();
+        let Self { run, image, place } = self;
+        let Run { spring, count } = run;
+        let Place { from, position, velocity, mass, acceleration, .. } = place;
         let mut pull = [[0.0; D]; BLOCK];
         let mut block = Block::<D>::new();
         for start in (0..*count).step_by(BLOCK) {
             let springs = BLOCK.min(count - start);
-            let first = spring.first + start..spring.first + start + springs;
-            let second = spring.second + start..spring.second + start + springs;
-            let pull = &mut pull[..springs];
-            if plain {
-                let (from, to) = (Vector::components(&position[first.clone()]), Vector::components(&position[second.clone()]));
-                for ((pull, from), to) in pull.as_flattened_mut().iter_mut().zip(from).zip(to) {
-                    *pull = spring.stiffness * (to - from);
-                }
-            } else {
-                block.load(image.as_ref(), &position[first.clone()], &position[second.clone()]);
-                block.stretch(spring, springs);
-                if spring.damping != 0.0 {
-                    block.damp(spring, &velocity[first.clone()], &velocity[second.clone()]);
-                }
-                for (n, pull) in pull.iter_mut().enumerate() {
-                    *pull = std::array::from_fn(|k| block.pull[k][n]);
-                }
+            let ends = |end: usize| end - from + start..end - from + start + springs;
+            let (first, second) = (ends(spring.first), ends(spring.second));
+            block.load(image.as_ref(), &position[first.clone()], &position[second.clone()]);
+            block.stretch(spring, springs);
+            if spring.damping != 0.0 {
+                block.damp(spring, &velocity[first.clone()], &velocity[second.clone()]);
             }
-            let pull = pull.as_flattened();
+            for (n, pull) in pull[..springs].iter_mut().enumerate() {
+                *pull = std::array::from_fn(|k| block.pull[k][n]);
+            }
+            let pull = pull[..springs].as_flattened();
             add(pull, 1.0, &mass[first.clone()], &mut acceleration[first]);
             add(pull, -1.0, &mass[second.clone()], &mut acceleration[second]);
         }
+    }
+}
+
+/// Springs of force `-k r` between equal masses, number by number: whatever the dimension, those of one end are `reach` before
+/// those of the other.
+pub(super) struct Line<'a> {
+    stiffness: f64,
+    inverse_mass: f64,
+    reach: usize,
+    count: usize,
+    position: &'a [f64],
+    acceleration: &'a mut [f64],
+}
+
+impl Kernel for Line<'_> {
+    type Output = ();
+
+    /// Particles at lower ends only, at both, and at upper ends only: each is read and written once.
+    #[inline(always)]
+    fn run(self) {
+        let Self { stiffness, inverse_mass, reach, count, position: r, acceleration: a } = self;
+        let pull = Pull { stiffness, inverse_mass };
+        let lower = reach.min(count);
+        for ((a, r), next) in a[..lower].iter_mut().zip(&r[..lower]).zip(&r[reach..]) {
+            *a += pull.of(next - r);
+        }
+        if reach < count {
+            let (a, r, next) = (&mut a[reach..count], &r[..count + reach], &r[2 * reach..count + reach]);
+            for (((a, before), r), next) in a.iter_mut().zip(r).zip(&r[reach..]).zip(next) {
+                *a = (*a + pull.of(next - r)) - pull.of(r - before);
+            }
+        }
+        let upper = reach.max(count);
+        let (a, r) = (&mut a[upper..count + reach], &r[..count + reach]);
+        for ((a, before), r) in a.iter_mut().zip(&r[upper - reach..]).zip(&r[upper..]) {
+            *a -= pull.of(r - before);
+        }
+    }
+}
+
+/// A linear spring between equal masses.
+#[derive(Clone, Copy)]
+struct Pull {
+    stiffness: f64,
+    inverse_mass: f64,
+}
+
+impl Pull {
+    /// What it adds at this length.
+    #[inline(always)]
+    fn of(self, x: f64) -> f64 {
+        self.inverse_mass * (self.stiffness * x)
     }
 }
 

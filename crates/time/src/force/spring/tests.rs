@@ -1,6 +1,7 @@
-use corpuscle_core::Random;
+use corpuscle_core::{Engine, Random};
 
 use super::*;
+use crate::{Drive, Integrator, Pin, Signal, TimeDriven};
 
 /// A net with springs in both directions and a few across, in shuffled order and with ends swapped.
 fn net(side: usize, like: Spring) -> (Particles<2>, Vec<Spring>) {
@@ -66,6 +67,40 @@ fn runs_are_the_springs_they_were_made_of() {
     }
 }
 
+/// Whoever stops after every step has all accelerations found and kept; on the way they are found as particles move. Either way, on
+/// any number of threads, the bits are the same.
+#[test]
+fn particles_move_while_springs_are_stretched() {
+    let hooke = Spring::new(0, 1, 1.3, 0.0);
+    // More than a few blocks, and enough for threads.
+    for (side, like) in [(12, hooke), (67, Spring { rest_length: 0.8, ..hooke }), (170, Spring { cubic: 0.1, ..hooke })] {
+        for axis in [Axis::Open, Axis::Periodic] {
+            let engine = |integrator| {
+                let (beads, springs) = net(side, like);
+                let boundary = Boundary::new([-4.0; 2], [side as f64 + 4.0; 2], axis);
+                let pins = (0..side).rev().map(|x| Pin { particle: x * side + 7, axes: [true, x % 2 == 0] }).collect();
+                let signal = Signal::Sine { amplitude: 0.5, angular_frequency: 1.0, phase: 0.3, ramp: 0.0 };
+                let drives = if axis == Axis::Open { vec![Drive { particle: 5, axis: 1, signal }] } else { vec![] };
+                let engine = TimeDriven::new(boundary, beads, vec![Box::new(Springs::new(springs))], integrator).unwrap();
+                engine.with_pins(pins).unwrap().with_drives(drives).unwrap()
+            };
+            for integrator in [Integrator::VelocityVerlet { dt: 0.02 }, Integrator::Yoshida4 { dt: 0.02 }] {
+                let mut expected = engine(integrator);
+                for step in 1..=7 {
+                    expected.advance(0.02 * f64::from(step), &mut ()).unwrap();
+                }
+                for threads in [1, 2, 3] {
+                    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                    let mut found = engine(integrator);
+                    pool.install(|| found.advance(0.14, &mut ())).unwrap();
+                    assert_eq!(found.steps(), 7);
+                    assert!(found.particles() == expected.particles(), "{side}, {axis:?}, {}, {threads}", integrator.name());
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn a_membrane_is_a_few_runs() {
     let side = 100;
@@ -78,7 +113,7 @@ fn a_membrane_is_a_few_runs() {
             springs.push(Spring::new(i - side, i, 1.0, 0.0));
         }
     }
-    let runs = Run::all(&springs);
+    let runs = Run::all(&springs, NEAR);
     assert!(runs.len() < 2 * side, "{} runs", runs.len());
     assert_eq!(runs.iter().map(|run| run.springs().count()).sum::<usize>(), springs.len());
 }
