@@ -6,6 +6,7 @@
 mod drawing;
 mod ensemble;
 mod experiments;
+pub mod frame;
 pub mod free;
 mod gas;
 mod horizon;
@@ -13,6 +14,7 @@ pub mod parameter;
 mod peek;
 pub mod simulation;
 
+pub use frame::Frame;
 pub use parameter::{Kind, Parameter, Settings, Value};
 pub use simulation::{Action, Honesty, Simulation, Table};
 
