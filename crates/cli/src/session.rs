@@ -192,7 +192,13 @@ impl Session {
 
     /// Adds a frame to the trajectory if one is due, now that the simulation has been asked to advance to `time`.
     fn film(&mut self, time: f64) -> Result<(), Trouble> {
-        let Some(trajectory) = self.trajectory.as_mut().filter(|trajectory| trajectory.next_time() <= time) else { return Ok(()) };
+        let Some(trajectory) = &mut self.trajectory else { return Ok(()) };
+        // The last one may be due at the end but for rounding.
+        let last = self.scenario.duration.unwrap_or_else(|| self.simulation.end());
+        let now = if time >= last { last * (1.0 + 1e-12) } else { time };
+        if trajectory.next_time() > now {
+            return Ok(());
+        }
         let Some(frame) = self.simulation.frame() else { return Ok(()) };
         trajectory.add(&frame).map_err(|error| self.keeper.lost(error, self.folder.path()))
     }

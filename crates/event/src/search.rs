@@ -96,7 +96,7 @@ pub(crate) struct View<'a, const D: usize> {
     pub(crate) field: Vector<D>,
 }
 
-/// The instructions the processor has, asked once.
+/// The instructions to use, asked once.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Instructions {
     #[cfg(target_arch = "x86_64")]
@@ -107,7 +107,7 @@ impl Instructions {
     pub(crate) fn of_this_processor() -> Self {
         Self {
             #[cfg(target_arch = "x86_64")]
-            avx2: std::arch::is_x86_feature_detected!("avx2"),
+            avx2: corpuscle_core::instructions::Instructions::detect().has_avx2(),
         }
     }
 

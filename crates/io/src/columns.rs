@@ -224,6 +224,9 @@ fn rows<R: BufRead>(lines: &mut Lines<R>, head: &Head) -> Result<Snapshot, ReadE
                 Column::Kind | Column::Other => {}
             }
         }
+        if !r.iter().all(|x| x.is_finite()) {
+            return Err(lines.wrong(&line, "places that the box leaves finite"));
+        }
         if m < 0.0 || size < 0.0 {
             return Err(lines.wrong(&line, "a mass and a radius, zero or more"));
         }

@@ -10,7 +10,7 @@ use corpuscle_experiments::Frame;
 use crate::columns::{Column, Head, Lines, ReadError};
 
 /// The frame of this number. Frames one after the other make a trajectory.
-pub fn frame(frame: &Frame, number: u64) -> String {
+pub(crate) fn frame(frame: &Frame, number: u64) -> String {
     let Frame { time, lower, upper, particles, .. } = frame;
     let faces = frame.periodic.map(|periodic| if periodic { "pp" } else { "ff" }).join(" ");
     let count = particles.len();

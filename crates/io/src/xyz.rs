@@ -12,7 +12,7 @@ use crate::columns::{Column, Head, Lines, ReadError};
 use crate::trajectory::word;
 
 /// One frame. Frames one after the other make a trajectory.
-pub fn frame(frame: &Frame) -> String {
+pub(crate) fn frame(frame: &Frame) -> String {
     let Frame { lower, upper, particles, .. } = frame;
     let [x, y, z] = [0, 1, 2].map(|k| upper[k] - lower[k]);
     let pbc = frame.periodic.map(|periodic| if periodic { "T" } else { "F" }).join(" ");

@@ -86,7 +86,7 @@ impl<const D: usize> Free<D> {
     fn energy_of_collisions(&self) -> Check {
         let walls = if self.isolated() { "" } else { " less what walls gave" };
         if self.elastic {
-            let quantity = format!("largest drift of the energy{walls}, relative");
+            let quantity = format!("largest energy drift{walls}, relative");
             return Check::at_most(quantity, self.energy.relative(), ROUNDING_BOUND, "elastic collisions, double precision");
         }
         let scale = |sample: &Sample| sample.kinetic + sample.potential.abs();
