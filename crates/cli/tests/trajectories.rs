@@ -7,7 +7,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use corpuscle_core::Random;
 use corpuscle_io::trajectory::{self, Snapshot};
@@ -19,6 +19,9 @@ const DISCS: &str = "engine = \"event\"\nduration = 4.0\n[box]\nlower = [-3.0, 1
 /// A soft fluid.
 const FLUID: &str = "engine = \"time\"\nduration = 1.0\n[integrator]\nname = \"velocity-verlet\"\ntime_step = 0.005\n[box]\n\
                      lower = [0.0, 0.0, 0.0]\nupper = [6.0, 7.0, 8.0]\nfaces = \"periodic\"\n[forces.wca]\n[[species]]\ncount = 100\nradius = 0.5\n";
+
+/// Equal but for the last digit, which serde_json may read one off.
+const EXACT: f64 = f64::EPSILON;
 
 fn corpuscle(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_corpuscle"));
@@ -74,7 +77,7 @@ fn compare(frame: &Value, expected: &Snapshot, planar: bool, shift: [f64; 3], er
         sides[2] = 0.0;
     }
     same("position", &frame["position"], &place, error);
-    if frame.get("dimension").is_some() || error == 0.0 || !planar {
+    if frame.get("dimension").is_some() || error == EXACT || !planar {
         same("box", &frame["box"], &sides, 1e-6);
     }
     if let Some(velocity) = frame.get("velocity") {
@@ -82,12 +85,14 @@ fn compare(frame: &Value, expected: &Snapshot, planar: bool, shift: [f64; 3], er
         same("mass", &frame["mass"], expected.mass.as_ref().unwrap(), error);
     }
     if let Some(radius) = frame.get("radius") {
-        same("radius", radius, expected.radius.as_ref().unwrap(), error);
+        // OVITO keeps radii in single precision.
+        same("radius", radius, expected.radius.as_ref().unwrap(), error.max(1e-6));
     }
     if let Some(time) = frame.get("time") {
         assert_eq!(time.as_f64(), expected.time);
     }
-    if let Some(periodic) = frame.get("periodic") {
+    // GSD has no word for walls.
+    if let Some(periodic) = frame.get("periodic").filter(|_| error == EXACT) {
         let axes: Vec<bool> = periodic.as_array().unwrap().iter().map(|axis| axis.as_bool().unwrap()).collect();
         assert_eq!(axes[..2], if planar { [true, false] } else { [true, true] });
     }
@@ -109,10 +114,10 @@ fn each_format_is_read_by_its_community() {
         assert!(trajectory::read(&files[0], Some(101)).is_err());
         let centre = if planar { [3.0, 6.0, 0.0] } else { [3.0, 3.5, 4.0] };
         for (reader, file, shift, error) in [
-            ("ase", &files[0], [0.0; 3], 0.0),
-            ("ovito", &files[0], [0.0; 3], 0.0),
-            ("ase", &files[1], [0.0; 3], 0.0),
-            ("ovito", &files[1], [0.0; 3], 0.0),
+            ("ase", &files[0], [0.0; 3], EXACT),
+            ("ovito", &files[0], [0.0; 3], EXACT),
+            ("ase", &files[1], [0.0; 3], EXACT),
+            ("ovito", &files[1], [0.0; 3], EXACT),
             ("gsd", &files[2], centre, 1e-6),
             ("ovito", &files[2], centre, 1e-6),
         ] {
@@ -153,20 +158,24 @@ fn a_killed_trajectory_is_whole_and_goes_on_to_the_same_bytes() {
     let mut random = Random::new(std::process::id().into(), 0);
     for format in ["xyz", "dump", "gsd"] {
         let file = format!("path.{format}");
-        let arguments = |out: &'static str| {
-            let run = ["run", "system.toml", "--out", out, "--no-pictures", "--quiet", "--checkpoint-time", "2", "--every", "0.25"];
-            [&run[..], &["--trajectory"]].concat()
+        // A kill may come before there is anything to go on with.
+        let go_on = |out: &str| {
+            let run = ["run", "system.toml", "--force", "--out", out, "--no-pictures", "--checkpoint-time", "2"];
+            let filmed = ["--every", "0.25", "--trajectory", &file, "--quiet"];
+            let begun = folder.path().join(out).join("scenario.toml").is_file();
+            if begun {
+                corpuscle(folder.path(), &["resume", out, "--quiet"])
+            } else {
+                corpuscle(folder.path(), &[&run[..], &filmed].concat())
+            }
         };
-        let clock = std::time::Instant::now();
-        ran(&corpuscle(folder.path(), &arguments("whole")).arg(&file).output().unwrap());
+        let clock = Instant::now();
+        ran(&go_on("whole").output().unwrap());
         let whole = clock.elapsed();
         let expected = fs::read(folder.path().join("whole").join(&file)).unwrap();
         let path: PathBuf = folder.path().join("broken").join(&file);
-        for attempt in 0..6 {
-            let mut command = corpuscle(folder.path(), if attempt == 0 { &[] } else { &["resume", "broken", "--quiet"] });
-            if attempt == 0 {
-                command.args(arguments("broken")).arg(&file);
-            }
+        for _ in 0..6 {
+            let mut command = go_on("broken");
             let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
             let end = whole.mul_f64(0.05 + 0.3 * random.uniform());
             std::thread::sleep(end.max(Duration::from_millis(20)));
@@ -178,8 +187,8 @@ fn a_killed_trajectory_is_whole_and_goes_on_to_the_same_bytes() {
             }
             let there = fs::read(&path).unwrap_or_default();
             let frames = match format {
-                // A file that has not been flushed yet has no frames, and is whole.
-                "gsd" if there.len() < 256 => 0,
+                // Killed before there was a header.
+                "gsd" if !there.starts_with(&0x65df_65df_65df_65df_u64.to_le_bytes()) => 0,
                 "gsd" => found("gsd", &path).len(),
                 _ => {
                     assert!(expected.starts_with(&there), "{format}: what is there is the beginning of the whole");
@@ -188,7 +197,9 @@ fn a_killed_trajectory_is_whole_and_goes_on_to_the_same_bytes() {
             };
             println!("{format}: killed with {} bytes, {frames} frames", there.len());
         }
-        ran(&output(folder.path(), &["resume", "broken", "--quiet"]));
+        if !folder.path().join("broken/report.html").is_file() {
+            ran(&go_on("broken").output().unwrap());
+        }
         assert!(expected == fs::read(&path).unwrap(), "{format}: the bytes are others");
         if format != "dump" {
             assert_eq!(found(if format == "gsd" { "gsd" } else { "ase" }, &path).len(), 241);
@@ -264,7 +275,7 @@ fn what_cannot_be_started_from_is_refused_with_its_place() {
     fs::create_dir(folder.path().join("folder.xyz")).unwrap();
     let rest = "radius = 0.1\nmass = 1\ntemperature = 1\n";
     for (keys, expected) in [
-        ("file = \"none.xyz\"\n", "again.toml:7:8: start.file = none.xyz: cannot be read: No such file"),
+        ("file = \"none.xyz\"\n", "again.toml:8:8: start.file = none.xyz: cannot be read: No such file"),
         ("file = \"../points.xyz\"\n", "expected a file in the folder of the scenario, or below it"),
         ("file = \"/etc/passwd\"\n", "expected a file in the folder of the scenario, or below it"),
         ("file = \"again.toml\"\n", "start.file = again.toml: cannot be read: a name that ends in .xyz"),
@@ -274,8 +285,8 @@ fn what_cannot_be_started_from_is_refused_with_its_place() {
             "start.temperature = missing: expected a number, 0 for a start at rest: points.xyz has no velocities",
         ),
         ("file = \"points.xyz\"\ntemperature = 1\n", "start.mass = missing"),
-        ("file = \"points.xyz\"\nframe = 1\n", "again.toml:8:9: start.frame = 1: expected one of the 1 whole frames, from 0"),
-        ("file = \"points.xyz\"\nradius = -1\nmass = 1\ntemperature = 1\n", "again.toml:8:10: start.radius = -1"),
+        ("file = \"points.xyz\"\nframe = 1\n", "again.toml:9:9: start.frame = 1: expected one of the 1 whole frames, from 0"),
+        ("file = \"points.xyz\"\nradius = -1\nmass = 1\ntemperature = 1\n", "again.toml:9:10: start.radius = -1"),
         ("file = \"points.xyz\"\nradus = 1\n", "did you mean `radius`?"),
         ("file = \"tilted.xyz\"\nREST", "expected particles in a plane"),
         ("file = \"outside.xyz\"\nREST", "start.file = position of particle 0"),

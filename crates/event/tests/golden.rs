@@ -168,14 +168,14 @@ fn whatever_the_instructions() {
     }
 }
 
-const REFLECTING: [u64; 2] = [0, 0];
-const MIXED: [u64; 2] = [0, 0];
-const WARM: [u64; 2] = [0, 0];
-const MOVING: [u64; 2] = [0, 0];
-const OPENING: [u64; 2] = [0, 0];
-const FURNISHED: [u64; 2] = [0, 0];
-const OPEN: [u64; 2] = [0, 0];
-const WELLS: [u64; 2] = [0, 0];
-const SHOULDERS: [u64; 2] = [0, 0];
-const PISTON: [u64; 2] = [0, 0];
-const GRAINS: [u64; 2] = [0, 0];
+const REFLECTING: [u64; 2] = [0x7a9b_892f_fe76_74a4, 0x53f9_8762_f8fa_8b7f];
+const MIXED: [u64; 2] = [0x42e7_c38d_02d6_1286, 0xf050_7edb_dfd4_43da];
+const WARM: [u64; 2] = [0xe74a_9d15_0b5a_c1d0, 0x4872_b8bb_9737_e3b1];
+const MOVING: [u64; 2] = [0xb367_5f49_a52e_3413, 0x9f24_6a0f_4a66_fead];
+const OPENING: [u64; 2] = [0xcda2_857e_f915_f681, 0xd2a3_9bcc_04ef_764f];
+const FURNISHED: [u64; 2] = [0xcbdb_29be_e348_3aa2, 0x6644_de3c_cf83_2c30];
+const OPEN: [u64; 2] = [0x737e_111a_2fb2_8a99, 0x5311_aca8_ed3f_0cb1];
+const WELLS: [u64; 2] = [0xf58c_0ea9_e514_e7e6, 0x9efb_b394_6b8d_2140];
+const SHOULDERS: [u64; 2] = [0xd8b2_5797_f196_24ab, 0x1b9a_2ee1_69ca_06f9];
+const PISTON: [u64; 2] = [0xa5c2_569c_cc8d_9c00, 0x1da1_93a9_4a52_5c2f];
+const GRAINS: [u64; 2] = [0xb601_9998_b029_2919, 0x93ea_4a22_c086_de47];

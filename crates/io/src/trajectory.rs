@@ -275,3 +275,6 @@ pub(crate) fn word(name: &str) -> String {
     let word: String = name.chars().map(|c| if c.is_whitespace() || c.is_control() { '_' } else { c }).take(60).collect();
     if word.is_empty() { "X".into() } else { word }
 }
+
+#[cfg(test)]
+mod tests;
