@@ -2,7 +2,7 @@
 #   make run    install what is missing, build, open the laboratory; without a display run the five experiments
 #   make test   the same, then every test
 .DEFAULT_GOAL := help
-.PHONY: help run reports test soak kill fuzz lint bench setup setup-test clean
+.PHONY: help run reports test soak kill fuzz lint audit bench setup setup-test clean
 
 CARGO ?= cargo
 OUT   ?= results
@@ -30,13 +30,18 @@ soak: ## An hour or so: 10^9 collisions, 10^8 contacts of grains, 10^5 periods o
 kill: setup-test ## A quarter of an hour: 200 kills at random moments, each run resumed to the same bits
 	$(CARGO) test --release --locked -p corpuscle --test kill -- --ignored --nocapture
 
-fuzz: setup-test ## Ten minutes or so: strangers' files, read or refused; tens of thousands of random systems, all invariants on
+fuzz: setup ## Ten minutes or so: strangers' files, read or refused; more than 10 000 random systems, all invariants on
 	FUZZ_FACTOR=30 $(CARGO) test --release --locked -p corpuscle-event --test invariants
-	FUZZ_CASES=200000 PROPTEST_CASES=20000 $(CARGO) test --release --locked -p corpuscle-io -- --nocapture
+	FUZZ_SYSTEMS=12000 $(CARGO) test --release --locked -p corpuscle-io --test systems -- --nocapture
+	FUZZ_CASES=100000 $(CARGO) test --release --locked -p corpuscle-io --test fuzz -- --nocapture
 
 lint: ## Format and house rules
 	$(CARGO) fmt --all --check
 	$(CARGO) clippy --release --locked --workspace --all-targets -- -D warnings
+
+audit: ## Licences, sources and known faults of the dependencies; needs the network for RustSec's list
+	@command -v cargo-deny >/dev/null || $(CARGO) install --locked cargo-deny
+	$(CARGO) deny --locked check
 
 bench: setup ## Time every kernel
 	$(CARGO) bench --locked --workspace --benches

@@ -8,11 +8,27 @@ if ! command -v cargo >/dev/null; then
     exit 1
 fi
 
+# Programs that read trajectories, from PyPI, in an environment of their own beside what is built. About 900 MB, most of it OVITO's.
+readers() {
+    [ "$purpose" = test ] || return 0
+    local here wanted
+    here=$(cd "$(dirname "$0")/.." && pwd)
+    wanted="$here/scripts/requirements.txt"
+    local environment="${CARGO_TARGET_DIR:-$here/target}/readers"
+    cmp -s "$wanted" "$environment/installed.txt" && return 0
+    echo "corpuscle: installing the readers of scripts/requirements.txt"
+    rm -rf "$environment"
+    python3 -m venv "$environment"
+    "$environment/bin/pip" install --quiet --disable-pip-version-check --requirement "$wanted"
+    cp "$wanted" "$environment/installed.txt"
+}
+
 case "$(uname -s)" in
     Linux) ;;
     Darwin)
         # macOS brings OpenGL and, with its command line tools, a compiler.
         xcode-select -p >/dev/null 2>&1 || { echo "corpuscle: run 'xcode-select --install' first." >&2; exit 1; }
+        readers
         exit 0 ;;
     *) exit 0 ;; # Windows: rustup's own installer asks for the compiler; the graphics driver brings OpenGL
 esac
@@ -34,9 +50,11 @@ need_library libXi.so.6 libxi6
 if [ "$purpose" = test ]; then
     need_command Xvfb xvfb                # a display in memory, for the window's tests
     need_command xdotool xdotool          # real key presses
+    need_command python3 python3          # the programs that read trajectories
+    python3 -c 'import ensurepip' 2>/dev/null || missing+=(python3-venv)
 fi
 
-[ ${#missing[@]} -eq 0 ] && exit 0
+[ ${#missing[@]} -eq 0 ] && { readers; exit 0; }
 if ! command -v apt-get >/dev/null; then
     echo "corpuscle: missing: ${missing[*]} (Debian's names). Install your system's equivalents:" >&2
     echo "  Fedora: dnf install gcc-c++ mesa-dri-drivers mesa-libEGL mesa-libGL libxkbcommon-x11 libXcursor libXi xorg-x11-server-Xvfb xdotool" >&2
@@ -52,3 +70,4 @@ echo "corpuscle: installing ${missing[*]}"
 export DEBIAN_FRONTEND=noninteractive
 $sudo apt-get update -qq
 $sudo apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+readers

@@ -2,6 +2,8 @@
 
 pub(crate) mod bench;
 pub(crate) mod check;
+mod conduct;
+pub(crate) mod export;
 pub(crate) mod lab;
 pub(crate) mod list;
 pub(crate) mod record;

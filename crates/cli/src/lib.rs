@@ -23,7 +23,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use corpuscle_io::Registry;
 
-use command::{bench, check, lab, list, record, resume, run, schema, verify, view};
+use command::{bench, check, export, lab, list, record, resume, run, schema, verify, view};
 use trouble::Trouble;
 
 /// A physics laboratory: exact hard-particle dynamics, soft particles, gravity and waves, measured beside theory.
@@ -42,6 +42,8 @@ enum Task {
     Run(run::Arguments),
     /// Go on with a run that was interrupted, from its newest checkpoint, to the same end to the last bit.
     Resume(resume::Arguments),
+    /// Write the particles of a checkpoint into a file for other programs: extended XYZ, LAMMPS dump or GSD.
+    Export(export::Arguments),
     /// Open the laboratory: a window with charts, parameters and a notebook. The same as `corpuscle` alone.
     Lab(lab::Arguments),
     /// Watch an experiment or a scenario file in the laboratory's window, or save what the window would show.
@@ -92,6 +94,7 @@ impl Command {
             Some(Task::List(arguments)) => list::list(arguments, registry),
             Some(Task::Run(arguments)) => run::run(arguments, registry),
             Some(Task::Resume(arguments)) => resume::resume(arguments, registry),
+            Some(Task::Export(arguments)) => export::export(arguments, registry),
             Some(Task::View(arguments)) => view::view(arguments, registry),
             Some(Task::Record(arguments)) => record::record(arguments, registry),
             Some(Task::Bench(arguments)) => bench::bench(arguments),

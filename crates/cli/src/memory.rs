@@ -21,7 +21,8 @@ pub(crate) fn needed(scenario: &Scenario) -> f64 {
 /// Particles in all systems of a scenario together.
 fn particles(scenario: &Scenario) -> f64 {
     if let Subject::Free(system) = &scenario.subject {
-        return system.species.iter().map(|group| group.count as f64).sum::<f64>() + system.particles.len() as f64;
+        return system.species.iter().map(|group| group.count as f64).sum::<f64>()
+            + (system.particles.len() + system.imported.as_ref().map_or(0, |start| start.particles.len())) as f64;
     }
     let whole = |key: &str| {
         let mut values = scenario.parameters().filter(|(parameter, ..)| parameter.name == key);

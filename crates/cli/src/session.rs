@@ -7,8 +7,9 @@ use corpuscle_core::Failure;
 use corpuscle_experiments::Simulation;
 use corpuscle_io::checkpoint::{Policy, Run};
 use corpuscle_io::number::significant;
+use corpuscle_io::trajectory::Plan;
 use corpuscle_io::write::file_stem;
-use corpuscle_io::{Ending, Folder, Picture, Record, Scenario, WriteError, csv, report, summary};
+use corpuscle_io::{Ending, Folder, Origin, Picture, Record, Refusal, Scenario, Trajectory, WriteError, csv, report, summary};
 use corpuscle_scene::Palette;
 
 use crate::console;
@@ -35,6 +36,7 @@ pub(crate) struct Session {
     pub(crate) simulation: Box<dyn Simulation>,
     pub(crate) folder: Folder,
     pub(crate) keeper: Keeper,
+    trajectory: Option<Trajectory>,
     pub(crate) quiet: bool,
     /// Time on the clock spent before.
     wall: Duration,
@@ -63,12 +65,25 @@ impl Session {
         simulation: Box<dyn Simulation>,
         folder: Folder,
         policy: Policy,
+        trajectory: Option<Plan>,
         quiet: bool,
-    ) -> Result<Self, WriteError> {
+    ) -> Result<Self, Trouble> {
         folder.clear()?;
-        folder.write(SCENARIO, scenario.to_toml().as_bytes())?;
+        let (scenario, start) = scenario.portable();
+        if let Some((name, bytes)) = start {
+            folder.write(name, &bytes)?;
+        }
         let keeper = Keeper::new(folder.path(), policy, simulation.as_ref(), None);
-        Ok(Self { scenario, simulation, folder, keeper, quiet, wall: Duration::ZERO, moments: 0, pictures: vec![] })
+        let trajectory = trajectory.map(|plan| Trajectory::begin(folder.path(), plan)).transpose()?;
+        let text = scenario.to_toml();
+        let (moments, pictures) = (0, vec![]);
+        let mut session = Self { scenario, simulation, folder, keeper, trajectory, quiet, wall: Duration::ZERO, moments, pictures };
+        if session.trajectory.is_some() && session.keeper.is_on() {
+            // The scenario does not say that there is a trajectory: whatever kills the run, its first checkpoint does.
+            session.keep(Duration::ZERO, session.simulation.time())?;
+        }
+        session.folder.write(SCENARIO, text.as_bytes())?;
+        Ok(session)
     }
 
     /// A run that goes on from a checkpoint, which the simulation has taken up. Pictures that are no longer there are left out.
@@ -79,15 +94,17 @@ impl Session {
         run: Run,
         policy: Policy,
         quiet: bool,
-    ) -> Self {
+    ) -> Result<Self, Trouble> {
         let keeper = Keeper::new(folder.path(), policy, simulation.as_ref(), Some(run.time));
+        let trajectory = run.trajectory.map(|kept| Trajectory::again(folder.path(), kept)).transpose();
+        let trajectory = trajectory.map_err(|invalid| Refusal::new(Origin::Unknown, invalid))?;
         let of_file = |(index, (time, caption)): (usize, (f64, String))| {
             let png = std::fs::read(folder.path().join(file_of_picture(index))).ok()?;
             Some(Picture { time, caption, png })
         };
         let pictures = run.pictures.into_iter().enumerate().filter_map(of_file).collect();
         let wall = Duration::try_from_secs_f64(run.wall).unwrap_or_default();
-        Self { scenario, simulation, folder, keeper, quiet, wall, moments: run.moments, pictures }
+        Ok(Self { scenario, simulation, folder, keeper, trajectory, quiet, wall, moments: run.moments, pictures })
     }
 
     /// Runs to the end, or as far as it gets, and writes everything down.
@@ -101,7 +118,7 @@ impl Session {
             Ok(()) => Ending::Finished,
             Err(Halt::Signal) => {
                 if self.keeper.is_on() {
-                    self.keep(&progress)?;
+                    self.keep(progress.wall(), progress.now())?;
                 }
                 Ending::Interrupted
             }
@@ -109,6 +126,9 @@ impl Session {
             Err(Halt::Trouble(trouble)) => return Err(trouble),
         };
         self.take(&mut artist)?;
+        if let Some(trajectory) = &mut self.trajectory {
+            trajectory.flush().map_err(|error| self.keeper.lost(error, self.folder.path()))?;
+        }
         let (pictures, wall) = (std::mem::take(&mut self.pictures), self.wall + progress.wall());
         let record = Record { pictures, ..Record::of(&self.scenario, self.simulation.as_ref(), end, ending, wall) };
         save(&record, &self.folder).map_err(|error| self.keeper.lost(error, self.folder.path()))?;
@@ -125,6 +145,7 @@ impl Session {
         let mut moments: Vec<f64> = self.simulation.moments().into_iter().filter(|&moment| moment < end).collect();
         moments.sort_by(f64::total_cmp);
         moments.dedup();
+        self.film(self.simulation.time()).map_err(Halt::Trouble)?;
         let mut looking = artist.as_mut().is_some_and(|artist| artist.look(self.simulation.as_ref()));
         for look in 1..=LOOKS {
             let to = if look == LOOKS { end } else { end * f64::from(look) / f64::from(LOOKS) };
@@ -149,10 +170,12 @@ impl Session {
                 self.hold_to_invariants()?;
                 return Err(Halt::Signal);
             }
-            progress.slice(self.simulation.as_mut(), to.min(self.keeper.next_time()))?;
+            let frame = self.trajectory.as_ref().map_or(f64::INFINITY, Trajectory::next_time);
+            progress.slice(self.simulation.as_mut(), to.min(self.keeper.next_time()).min(frame))?;
+            self.film(progress.now()).map_err(Halt::Trouble)?;
             if self.keeper.is_due(self.simulation.as_ref(), progress.now()) {
                 self.hold_to_invariants()?;
-                self.keep(progress).map_err(Halt::Trouble)?;
+                self.keep(progress.wall(), progress.now()).map_err(Halt::Trouble)?;
             }
         }
         Ok(())
@@ -167,9 +190,26 @@ impl Session {
         }
     }
 
-    /// Writes a checkpoint, and what has been measured so far.
-    fn keep(&mut self, progress: &Progress) -> Result<(), Trouble> {
-        let (clock, wall) = (Instant::now(), self.wall + progress.wall());
+    /// Adds a frame to the trajectory if one is due, now that the simulation has been asked to advance to `time`.
+    fn film(&mut self, time: f64) -> Result<(), Trouble> {
+        let Some(trajectory) = &mut self.trajectory else { return Ok(()) };
+        // The last one may be due at the end but for rounding.
+        let last = self.scenario.duration.unwrap_or_else(|| self.simulation.end());
+        let now = if time >= last { last * (1.0 + 1e-12) } else { time };
+        if trajectory.next_time() > now {
+            return Ok(());
+        }
+        let Some(frame) = self.simulation.frame() else { return Ok(()) };
+        trajectory.add(&frame).map_err(|error| self.keeper.lost(error, self.folder.path()))
+    }
+
+    /// Writes a checkpoint, and what has been measured so far, after `wall` on the clock, of a simulation that has been asked to
+    /// advance to `time`.
+    fn keep(&mut self, wall: Duration, time: f64) -> Result<(), Trouble> {
+        let (clock, wall) = (Instant::now(), self.wall + wall);
+        if let Some(trajectory) = &mut self.trajectory {
+            trajectory.flush().map_err(|error| self.keeper.lost(error, self.folder.path()))?;
+        }
         let run = Run {
             scenario: self.scenario.to_toml(),
             time: self.simulation.time(),
@@ -177,9 +217,10 @@ impl Session {
             moments: self.moments,
             pictures: self.pictures.iter().map(|picture| (picture.time, picture.caption.clone())).collect(),
             policy: *self.keeper.policy(),
+            trajectory: self.trajectory.as_ref().map(Trajectory::kept),
         };
         let simulation = self.simulation.as_ref();
-        let kept = self.keeper.write(&run, simulation, progress.now()).and_then(|()| {
+        let kept = self.keeper.write(&run, simulation, time).and_then(|()| {
             let record = Record::of(&self.scenario, simulation, self.end(), Ending::Running, wall);
             Ok(save_numbers(&record, &self.folder)?)
         });

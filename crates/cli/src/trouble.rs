@@ -57,7 +57,7 @@ impl Trouble {
         match self {
             Self::Refused(_)
             | Self::Usage(_)
-            | Self::Write(WriteError::NotEmpty(_) | WriteError::NotAFolder(_))
+            | Self::Write(WriteError::NotEmpty(_) | WriteError::NotAFolder(_) | WriteError::Taken { .. })
             | Self::Render(RenderError::Size { .. } | RenderError::Clip { .. }) => ExitCode::from(2),
             _ => ExitCode::from(1),
         }

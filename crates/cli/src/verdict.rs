@@ -9,8 +9,12 @@ use crate::table::{Align, table};
 /// How it ended and what became of the checks, in a line.
 pub(crate) fn verdict(record: &Record) -> String {
     let (passed, all) = (record.passed(), record.checks.len());
-    let checks =
-        if passed == all { format!("all {all} checks passed") } else { format!("{} of {all} checks failed", all - passed) };
+    let checks = match all {
+        0 => "nothing was checked: no conservation law and no theory applies to what was measured".into(),
+        1 if passed == 1 => format!("the one check passed: {}", record.checks[0].quantity),
+        _ if passed == all => format!("all {all} checks passed"),
+        _ => format!("{} of {all} checks failed", all - passed),
+    };
     match record.ending {
         Ending::Finished => checks,
         Ending::Interrupted | Ending::Running => {

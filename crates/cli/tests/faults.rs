@@ -143,6 +143,26 @@ fn a_folder_that_vanishes_ends_the_run() {
     goes_on(folder.path(), "elsewhere");
 }
 
+/// Two processes in one folder: the second is told who is there, and changes nothing. A lock of the dead holds nobody.
+#[test]
+fn a_folder_in_use_is_refused() {
+    let folder = prepared();
+    let mut child = start(folder.path(), "out");
+    let again = ["run", "gas.toml", "--out", "out", "--force", "--no-pictures", "--quiet"];
+    for arguments in [&["resume", "out", "--quiet"][..], &again] {
+        let output = corpuscle(folder.path(), arguments).output().unwrap();
+        let said = complaint(&output);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains(&format!("out: in use by process {}:", child.id())) && said.lines().count() == 1, "{said}");
+    }
+    assert!(child.try_wait().unwrap().is_none(), "and it goes on");
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(folder.path().join("out/.corpuscle-lock").exists());
+    goes_on(folder.path(), "out");
+    assert!(!folder.path().join("out/.corpuscle-lock").exists());
+}
+
 #[test]
 fn standard_output_that_is_full_is_said() {
     let folder = prepared();

@@ -1,5 +1,5 @@
 //! Runs killed at random moments, as often as it pleases, and resumed: what they leave behind at last is what an unbroken run
-//! leaves, to the last bit, in the state, in every series and in the summary.
+//! leaves, to the last bit, in the state, in every series, in the trajectory and in the summary.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::case_sensitive_file_extension_comparisons)] // in helpers too: a test that cannot go on has failed; names are our own
@@ -29,8 +29,9 @@ const SYSTEMS: [(&str, &str); 2] = [
          [forces.lennard_jones]\nepsilon = 1.0\nsigma = 1.0\ncutoff = 2.5\n[[species]]\ncount = 800\nradius = 0.5\ntemperature = 0.7\n",
     ),
 ];
-/// How long each runs, and the time between its checkpoints, of which the last is at its end.
-const TIMES: [(&str, &str); 2] = [("30.0", "2.5"), ("6.0", "0.5")];
+/// How long each runs, the time between its checkpoints, of which the last is at its end, and its trajectory.
+const TIMES: [Timing; 2] = [("30.0", "2.5", "path.gsd"), ("6.0", "0.5", "path.xyz")];
+type Timing = (&'static str, &'static str, &'static str);
 
 fn corpuscle(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_corpuscle"));
@@ -39,32 +40,34 @@ fn corpuscle(folder: &Path, arguments: &[&str]) -> Command {
 }
 
 /// The run in this folder, or what goes on with it. A kill may come before there is a folder, or in the middle of a file.
-fn go_on(folder: &Path, out: &str, interval: &str) -> Command {
+fn go_on(folder: &Path, out: &str, (_, interval, trajectory): Timing) -> Command {
     let often = ["--checkpoint-time", interval, "--checkpoints", "2", "--no-pictures", "--quiet"];
     let begun = folder.join(out).join("scenario.toml").is_file();
-    let what = if begun { &["resume", out][..] } else { &["run", "system.toml", "--force", "--out", out] };
+    let every = (interval.parse::<f64>().unwrap() / 7.0).to_string();
+    let filmed = ["run", "system.toml", "--force", "--out", out, "--trajectory", trajectory, "--every", &every];
+    let what = if begun { &["resume", out][..] } else { &filmed };
     corpuscle(folder, &[what, &often].concat())
 }
 
 /// What a finished run left: its series, its summary without the clock, and the state at its end.
-fn left_behind(folder: &Path) -> BTreeMap<String, String> {
+fn left_behind(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut files = BTreeMap::new();
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        if name.ends_with(".csv") || name == "scenario.toml" {
-            files.insert(name, fs::read_to_string(&path).unwrap());
+        if [".csv", ".xyz", ".gsd"].iter().any(|end| name.ends_with(end)) || name == "scenario.toml" {
+            files.insert(name, fs::read(&path).unwrap());
         } else if name == "summary.json" {
             let mut summary: Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
             let engine = summary["engine"].as_object_mut().unwrap();
             assert!(engine.remove("wall_s").is_some() && engine.remove("rate").is_some());
-            files.insert(name, summary.to_string());
+            files.insert(name, summary.to_string().into());
         } else {
             assert!(!name.starts_with('.'), "{name} is left over");
         }
     }
     let newest = Checkpoint::read(&Checkpoints::of(folder).files()[0]).unwrap();
-    files.insert("state".into(), format!("t = {:?}: {}", newest.run.time, newest.digest().unwrap()));
+    files.insert("state".into(), format!("t = {:?}: {}", newest.run.time, newest.digest().unwrap()).into());
     files
 }
 
@@ -86,11 +89,11 @@ fn killed(mut child: Child, after: Duration) -> bool {
 /// So many kills of each engine, up to six a run.
 fn survive(kills: u32) {
     let mut random = Random::new(std::process::id().into(), 0);
-    for ((name, text), (duration, interval)) in SYSTEMS.into_iter().zip(TIMES) {
+    for ((name, text), timing) in SYSTEMS.into_iter().zip(TIMES) {
         let folder = tempfile::tempdir().unwrap();
-        fs::write(folder.path().join("system.toml"), text.replace("DURATION", duration)).unwrap();
+        fs::write(folder.path().join("system.toml"), text.replace("DURATION", timing.0)).unwrap();
         let started = Instant::now();
-        let status = go_on(folder.path(), "unbroken", interval).status().unwrap();
+        let status = go_on(folder.path(), "unbroken", timing).status().unwrap();
         assert!(matches!(status.code(), Some(0 | 3)), "{name}: {status}");
         let whole = started.elapsed();
         let expected = left_behind(&folder.path().join("unbroken"));
@@ -99,7 +102,7 @@ fn survive(kills: u32) {
             let out = format!("broken-{runs}");
             runs += 1;
             for _ in 0..6 {
-                let child = go_on(folder.path(), &out, interval).spawn().unwrap();
+                let child = go_on(folder.path(), &out, timing).spawn().unwrap();
                 if !killed(child, whole.mul_f64(0.5 * random.uniform())) {
                     break;
                 }
@@ -108,12 +111,14 @@ fn survive(kills: u32) {
             }
             let finished = folder.path().join(&out).join("report.html").is_file();
             if !finished {
-                let status = go_on(folder.path(), &out, interval).status().unwrap();
+                let status = go_on(folder.path(), &out, timing).status().unwrap();
                 assert!(matches!(status.code(), Some(0 | 3)), "{name}, run {runs}: {status}");
             }
             let found = left_behind(&folder.path().join(&out));
-            for (file, text) in &expected {
-                assert!(found.get(file) == Some(text), "{name}, run {runs}: {file} is another\n{text}\n{:?}", found.get(file));
+            for (file, bytes) in &expected {
+                let words = |bytes: &[u8]| String::from_utf8_lossy(bytes).chars().take(3000).collect::<String>();
+                let other = found.get(file).map(|found| words(found));
+                assert!(found.get(file) == Some(bytes), "{name}, run {runs}: {file} is another\n{}\n{other:?}", words(bytes));
             }
             assert_eq!(expected.len(), found.len(), "{name}, run {runs}");
             fs::remove_dir_all(folder.path().join(&out)).unwrap();

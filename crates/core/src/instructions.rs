@@ -1,5 +1,7 @@
 //! Run-time choice of the instruction set.
 
+use std::sync::OnceLock;
+
 /// Work that is compiled once for each instruction set. `run` must be `#[inline(always)]`, and so must what it calls: only
 /// then does the compiler use the instructions of the function it ends up in.
 ///
@@ -47,9 +49,22 @@ impl Instructions {
     /// What every machine of the target has.
     pub const PLAIN: Self = Self(Set::Plain);
 
-    /// The best this machine has.
+    /// The best this machine has, or a plainer one where the environment asks for it: `CORPUSCLE_INSTRUCTIONS` may be `plain` or
+    /// `avx2`. Results do not depend on it: to show that is what it is for.
     #[inline]
     pub fn detect() -> Self {
+        static CHOSEN: OnceLock<Instructions> = OnceLock::new();
+        *CHOSEN.get_or_init(|| {
+            let best = Self::best();
+            match std::env::var("CORPUSCLE_INSTRUCTIONS").as_deref() {
+                Ok("plain") => Self::PLAIN,
+                Ok("avx2") => best.without_avx512(),
+                _ => best,
+            }
+        })
+    }
+
+    fn best() -> Self {
         #[cfg(target_arch = "x86_64")]
         {
             if is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq") && is_x86_feature_detected!("avx512vl") {
@@ -102,7 +117,7 @@ impl Instructions {
             Set::Plain => kernel.run(),
             #[cfg(target_arch = "x86_64")]
             #[allow(unsafe_code, reason = "the one way into code for an instruction set chosen at run time")]
-            // SAFETY: `detect` and `all` make these values only where the machine has the instructions.
+            // SAFETY: `best`, from which all values come, makes these only where the machine has the instructions.
             Set::Avx2 => unsafe { with_avx2(kernel) },
             #[cfg(target_arch = "x86_64")]
             #[allow(unsafe_code, reason = "the one way into code for an instruction set chosen at run time")]

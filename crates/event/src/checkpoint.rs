@@ -4,7 +4,8 @@
 //! again: a prediction is a function of stored states, whenever it is made. Two things more belong to the state. With
 //! neighbour lists, a particle that leaves its small box beyond a periodic face changes its image, and when it does so, which
 //! rounding shows, follows from where and when the box was made. And of collisions at exactly the same time that comes first
-//! whose particle planned it, so that it matters in which of its two plans a collision stands.
+//! whose particle planned it, so that it matters in which of its two plans a collision stands, and likewise a contact with
+//! the piston.
 
 use corpuscle_core::{Boundary, Invalid, Particles, Vector, array};
 use serde::de::{Deserialize, Deserializer, Error};
@@ -74,7 +75,7 @@ impl<const D: usize> State<D> {
             slots,
             neighbours,
             pairs,
-            piston,
+            piston: _,
             thermal_contacts,
             epoch,
             now,
@@ -123,7 +124,7 @@ impl<const D: usize> State<D> {
             thermal_contacts: thermal_contacts.clone(),
             bonds: pairs.bonds.pairs().collect(),
             boxes,
-            piston: piston.as_ref().map(MovingPiston::kept),
+            piston: engine.kept_piston(),
             epoch: *epoch,
             now: *now,
             time: *time,
@@ -166,6 +167,9 @@ impl<const D: usize> State<D> {
         }
         if let Some(piston) = &self.piston {
             as_many("piston.above", piston.above.len())?;
+            if !piston.fits(n) {
+                return Err(Invalid::new("piston", "plans with others", format!("times, and some of {n} particles")));
+            }
         }
         if self.piston.is_some() != self.boundary.piston.is_some() {
             return Err(Invalid::new("piston", self.piston.is_some(), "one if the box has one"));
@@ -195,7 +199,7 @@ impl<const D: usize> State<D> {
         }
         engine.bonds_unknown = false;
         engine.thermal_contacts = self.thermal_contacts;
-        engine.piston = self.piston.map(MovingPiston::resumed);
+        engine.piston = self.piston.as_ref().map(MovingPiston::resumed);
         (engine.epoch, engine.now, engine.time) = (self.epoch, self.now, self.time);
         (engine.removals, engine.removed) = (removals(&engine.boundary, self.time), self.removed);
         engine.sort();
@@ -210,6 +214,9 @@ impl<const D: usize> State<D> {
             engine.plans.iter_mut().zip(&ids).for_each(|(plan, &id)| plan.exit_time = boxes.exit_time[id]);
         }
         engine.recall(&self.plans, &ids);
+        if let Some(piston) = &self.piston {
+            engine.recall_piston(piston);
+        }
         engine.calendar.fill(engine.now, due(&engine.plans, engine.piston.as_ref()));
         (engine.counts, engine.next_epoch) = (self.counts, self.next_epoch);
         Ok(engine)

@@ -3,6 +3,9 @@
 //! It is lazy like a particle, and planned like one: the engine's inequality `min(P(i), P(j)) <= T(i, j)` holds with the
 //! piston as `j`. A particle that changes is tested against the piston as it is; a piston that changes is tested against
 //! all particles. The time `T` is a function of the two stored states alone.
+//!
+//! Of events at exactly the same time that comes first whose owner has the lower index; those in the piston's own plan come behind
+//! those of all particles, in the order of the particles they are with.
 
 use std::cmp::Ordering;
 
@@ -12,6 +15,7 @@ use crate::engine::EventDriven;
 use crate::law::Law;
 use crate::motion::{Flight, upward_passage};
 use crate::surface::touching;
+use crate::wall::PISTON;
 
 /// How many of the next contacts are kept: others may take the particles of the first away before they come.
 const KEPT: usize = 32;
@@ -36,13 +40,31 @@ pub(crate) struct MovingPiston {
     stop_time: f64,
 }
 
-/// The motion of a piston without its plan.
+/// A piston as it is written down. What stands in whose plan is state: of events at exactly the same time that comes first whose
+/// owner has the lower index, and behind all particles is the piston.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Kept {
     pub(crate) state: Piston,
     pub(crate) time: f64,
     pub(crate) resting: bool,
     pub(crate) above: Vec<bool>,
+    /// The contacts it has planned, the earliest last: when, with whom, and whether that one has not changed since.
+    pub(crate) candidates: Vec<(f64, u32, bool)>,
+    pub(crate) horizon: f64,
+    pub(crate) stop_time: f64,
+    /// Of each particle whose plan is older than the piston's motion: when it would have met the piston, if it was that it was to
+    /// meet next.
+    pub(crate) outdated: Vec<(u32, Option<f64>)>,
+}
+
+impl Kept {
+    /// Whether it belongs to so many particles.
+    pub(crate) fn fits(&self, n: usize) -> bool {
+        let ids = self.candidates.iter().map(|candidate| candidate.1).chain(self.outdated.iter().map(|&(id, _)| id));
+        let outdated = self.outdated.iter().filter_map(|&(_, time)| time);
+        let mut times = self.candidates.iter().map(|candidate| candidate.0).chain(outdated).chain([self.horizon, self.stop_time]);
+        self.above.len() == n && ids.into_iter().all(|id| (id as usize) < n) && !times.any(f64::is_nan)
+    }
 }
 
 /// A contact with the particle stored at this place, if its stamp is still the same.
@@ -77,17 +99,11 @@ impl MovingPiston {
         }
     }
 
-    /// A piston that goes on as it was.
-    pub(crate) fn resumed(kept: Kept) -> Self {
-        let Kept { state, time, resting, above } = kept;
+    /// A piston that goes on as it was, without its plan.
+    pub(crate) fn resumed(kept: &Kept) -> Self {
+        let Kept { state, time, resting, ref above, .. } = *kept;
         let fresh = Self::new::<1>(state, time, std::iter::empty());
-        Self { resting, known: vec![0; above.len()], above, ..fresh }
-    }
-
-    /// What it needs to go on.
-    pub(crate) fn kept(&self) -> Kept {
-        let Self { state, time, resting, ref above, stamp: _, known: _, candidates: _, horizon: _, stop_time: _ } = *self;
-        Kept { state, time, resting, above: above.clone() }
+        Self { resting, known: vec![0; above.len()], above: above.clone(), ..fresh }
     }
 
     fn acceleration(&self) -> f64 {
@@ -181,6 +197,42 @@ impl MovingPiston {
 }
 
 impl<const D: usize> EventDriven<D> {
+    /// The piston with all that stands in plans about it.
+    pub(crate) fn kept_piston(&self) -> Option<Kept> {
+        let piston = self.piston.as_ref()?;
+        let MovingPiston { state, time, resting, stamp: _, ref above, ref known, ref candidates, horizon, stop_time } = *piston;
+        let is_fresh = |candidate: &Candidate| self.plans[candidate.particle as usize].stamp == candidate.stamp;
+        let candidates = candidates.iter().map(|candidate| (candidate.time, candidate.id, is_fresh(candidate))).collect();
+        let meets = |id: usize| {
+            let i = self.slots[id] as usize;
+            (self.met[i] == PISTON).then_some(self.plans[i].surface_time)
+        };
+        let outdated = (0..known.len()).filter(|&id| !piston.is_known_to(id)).map(|id| (id as u32, meets(id))).collect();
+        Some(Kept { state, time, resting, above: above.clone(), candidates, horizon, stop_time, outdated })
+    }
+
+    /// Puts all that stands in plans about the piston where it stood, rather than where it would stand if planned now.
+    pub(crate) fn recall_piston(&mut self, kept: &Kept) {
+        let Some(mut piston) = self.piston.take() else { return };
+        for &(id, meets) in &kept.outdated {
+            piston.known[id as usize] = piston.stamp.wrapping_sub(1);
+            let i = self.slots[id as usize] as usize;
+            // As long as the piston is away, this finds the surfaces only.
+            self.plan_surface(i);
+            if let Some(time) = meets {
+                (self.plans[i].surface_time, self.met[i]) = (time, PISTON);
+            }
+        }
+        piston.candidates.clear();
+        piston.candidates.extend(kept.candidates.iter().map(|&(time, id, is_fresh)| {
+            let particle = self.slots[id as usize];
+            let stamp = self.plans[particle as usize].stamp;
+            Candidate { time, id, particle, stamp: if is_fresh { stamp } else { stamp.wrapping_sub(1) } }
+        }));
+        (piston.horizon, piston.stop_time) = (kept.horizon, kept.stop_time);
+        self.piston = Some(piston);
+    }
+
     /// The piston as it is now.
     pub fn piston(&self) -> Option<Piston> {
         self.piston.as_ref().map(|piston| piston.at(self.now))

@@ -33,8 +33,9 @@ pub(crate) fn add_event_driven<const D: usize>(
     start: f64,
     shade: impl Fn(usize) -> f64,
 ) {
-    scene.shaded = scene.wanted;
-    let shade = |i: usize| match scene.wanted {
+    let uncounted = scene.wanted == Shade::Collisions && tally.is_empty();
+    scene.shaded = if uncounted { Shade::Own } else { scene.wanted };
+    let shade = |i: usize| match scene.shaded {
         Shade::Own => shade(i),
         Shade::Species => f64::from(engine.species(i)),
         Shade::Mass => engine.mass(i),

@@ -3,7 +3,10 @@
 
 mod build;
 mod charts;
+mod given;
+mod picture;
 mod run;
+mod sample;
 pub mod spec;
 mod verdict;
 

@@ -6,6 +6,7 @@
 mod drawing;
 mod ensemble;
 mod experiments;
+pub mod frame;
 pub mod free;
 mod gas;
 mod hand;
@@ -16,6 +17,7 @@ mod replicas;
 pub mod simulation;
 mod tally;
 
+pub use frame::Frame;
 pub use parameter::{Kind, Parameter, Settings, Value};
 pub use simulation::{Action, Honesty, Simulation, Table};
 

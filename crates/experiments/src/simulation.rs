@@ -5,6 +5,8 @@ use corpuscle_core::{Failure, Invalid};
 use corpuscle_observe::{Chart, Check};
 use corpuscle_scene::Scene;
 
+use crate::Frame;
+
 /// A running experiment.
 ///
 /// Where and how often a caller stops has no influence on what it computes: the experiment samples at its own times.
@@ -43,6 +45,11 @@ pub trait Simulation: Send {
     /// Times worth a picture in the report, in ascending order; the end is always added.
     fn moments(&self) -> Vec<f64> {
         vec![0.0]
+    }
+
+    /// All particles now, for a trajectory; none of an experiment that has no particles to show in files.
+    fn frame(&self) -> Option<Frame> {
+        None
     }
 
     /// What has changed since the start, for a checkpoint; none of an experiment that cannot be taken up again.

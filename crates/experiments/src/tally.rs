@@ -14,6 +14,11 @@ impl Tally {
         Self(vec![0; count])
     }
 
+    /// Whether nothing is counted.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
     /// Collisions of a particle since the tally began.
     pub(crate) fn count(&self, particle: usize) -> u32 {
         self.0.get(particle).copied().unwrap_or(0)

@@ -20,7 +20,7 @@ use crate::{VERSION, WriteError};
 /// The first line of every checkpoint.
 const MAGIC: &[u8] = b"CORPUSCLE CHECKPOINT\n";
 /// The number of the format; a change of what stands in the file, or of what it means, raises it.
-const FORMAT: u64 = 1;
+const FORMAT: u64 = 2;
 /// Bytes before the map.
 const HEAD: usize = MAGIC.len() + 8 + 8 + blake3::OUT_LEN;
 /// Folder of the checkpoints in that of the run, and how their names end.
@@ -42,6 +42,8 @@ pub struct Run {
     pub pictures: Vec<(f64, String)>,
     /// When checkpoints are written.
     pub policy: Policy,
+    /// The trajectory, as far as it had been written.
+    pub trajectory: Option<crate::trajectory::Kept>,
 }
 
 /// When checkpoints are written, and how many are kept.

@@ -14,6 +14,9 @@
 //!
 //! Every key is known, typed and ranged; what is not is refused with its line and column, and a near miss is named.
 
+mod reader;
+mod start;
+
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::fs::File;
@@ -22,12 +25,11 @@ use std::path::Path;
 
 use corpuscle_core::Invalid;
 use corpuscle_experiments::{Experiment, Parameter, Settings, Simulation, Value, free};
-use serde::Deserialize;
-use toml::Spanned;
-use toml::de::{DeString, DeTable, DeValue};
+use reader::{Reader, value_of};
+use toml::de::DeTable;
 
 use crate::VERSION;
-use crate::refusal::{Origin, Place, Refusal, one_of, quoted};
+use crate::refusal::{Origin, Place, Refusal, one_of};
 
 /// The experiments a scenario can name.
 pub type Registry<'a> = &'a [&'static Experiment];
@@ -270,6 +272,16 @@ impl Scenario {
         around.find_map(|key| self.origins.get(key)).unwrap_or(&self.file).clone()
     }
 
+    /// The scenario for a folder of its own, and the file that has to be there beside it, if it starts from one: that frame alone,
+    /// under a name of its own and with its sum.
+    #[must_use]
+    pub fn portable(mut self) -> (Self, Option<(&'static str, Vec<u8>)>) {
+        let Subject::Free(system) = &mut self.subject else { return (self, None) };
+        let Some((start, file)) = start::pack(system) else { return (self, None) };
+        system.start = Some(start);
+        (self, Some((start::FILE, file)))
+    }
+
     /// The scenario as a file that gives the same run again, bit for bit: numbers are written with as many digits as
     /// they need to be read back exactly.
     ///
@@ -301,16 +313,6 @@ impl Scenario {
     }
 }
 
-/// What serde says of a word it does not know, taken apart: whether it is a key, the word, and the known ones. Its message is
-/// "unknown field `raduis`, expected one of `radius`, `mass`", or "unknown variant" of the same form.
-fn unknown_word(message: &str) -> Option<(bool, &str, Vec<&str>)> {
-    let key = message.starts_with("unknown field ");
-    let mut quoted = message.split('`').skip(1).step_by(2);
-    let word = quoted.next()?;
-    (key || message.starts_with("unknown variant ")).then(|| (key, word, quoted.collect()))
-}
-
-const SEED: &str = "a whole number from 0 to 18446744073709551615";
 const DURATION: &str = "a positive number: the physical time to run for";
 
 fn names(experiment: &'static Experiment) -> impl Iterator<Item = &'static str> {
@@ -325,111 +327,12 @@ fn top_level_keys(experiment: &'static Experiment, key: &str) -> String {
     one_of(key, KEYS)
 }
 
-/// A value as the declarations know it; none for tables, dates and mixed lists.
-fn value_of(value: &DeValue) -> Option<Value> {
-    let real = |value: &DeValue| match value_of(value)? {
-        Value::Real(x) => Some(x),
-        Value::Whole(n) => Some(n as f64),
-        _ => None,
-    };
-    match value {
-        DeValue::Integer(digits) => match u64::from_str_radix(digits.as_str(), digits.radix()) {
-            Ok(n) => Some(Value::Whole(n)),
-            // Negative, or beyond the whole numbers: as a real number it is still a number.
-            Err(_) => digits.as_str().parse().ok().map(Value::Real),
-        },
-        DeValue::Float(digits) => digits.as_str().parse().ok().map(Value::Real),
-        DeValue::String(word) => Some(Value::Word(word.clone().into_owned())),
-        DeValue::Boolean(flag) => Some(Value::Flag(*flag)),
-        DeValue::Array(items) => items.iter().map(|item| real(item.get_ref())).collect::<Option<_>>().map(Value::List),
-        DeValue::Table(_) | DeValue::Datetime(_) => None,
-    }
-}
-
 /// A value in TOML, with the digits needed to read it back exactly.
 fn toml_text(value: &Value) -> String {
     match value {
         Value::Real(x) => format!("{x:?}"),
         Value::Word(word) => toml::Value::String(word.clone()).to_string(),
         Value::Whole(_) | Value::Flag(_) | Value::List(_) => value.to_string(),
-    }
-}
-
-/// The text being read and its file: turns spans into places.
-struct Reader<'a> {
-    text: &'a str,
-    path: &'a Path,
-}
-
-impl Reader<'_> {
-    /// A system of the file's own.
-    fn free_system(&self, mut document: Spanned<DeTable>) -> Result<Scenario, Refusal> {
-        let mut seed = DEFAULT_SEED;
-        if let Some(value) = document.get_mut().remove("seed") {
-            seed = self.seed(&value)?;
-        }
-        let mut origins = BTreeMap::new();
-        self.collect("", document.get_ref(), &mut origins);
-        let system = free::System::deserialize(toml::de::Deserializer::from(document)).map_err(|error| {
-            let place = error.span().map(|span| Place::of(self.text, span.start));
-            let found = error.span().map_or_else(|| "(incomplete)".into(), |span| quoted(self.text, span));
-            let invalid = match unknown_word(error.message()) {
-                Some((true, word, known)) => Invalid::new(word, "(an unknown key)", one_of(word, known)),
-                Some((false, word, known)) => Invalid::new("system", found, one_of(word, known)),
-                None => Invalid::new("system", found, error.message().replace('\n', "; ")),
-            };
-            Refusal::new(Origin::File(self.path.into(), place), invalid)
-        })?;
-        let scenario = Scenario::of(Subject::Free(Box::new(system)), Settings::new(&[], seed));
-        Ok(Scenario { file: Origin::File(self.path.into(), None), origins, ..scenario })
-    }
-
-    /// Where the keys of a table and of the tables in it stand, as paths: `box.lower`, `species[0].radius`.
-    fn collect(&self, prefix: &str, table: &DeTable, origins: &mut BTreeMap<String, Origin>) {
-        for (key, value) in table {
-            let path = format!("{prefix}{}", key.get_ref());
-            match value.get_ref() {
-                DeValue::Table(inner) => self.collect(&format!("{path}."), inner, origins),
-                DeValue::Array(items) => {
-                    for (index, item) in items.iter().enumerate() {
-                        if let Some(inner) = item.get_ref().as_table() {
-                            self.collect(&format!("{path}[{index}]."), inner, origins);
-                            origins.insert(format!("{path}[{index}]"), self.origin(item));
-                        }
-                    }
-                }
-                _ => {}
-            }
-            origins.insert(path, self.origin(value));
-        }
-    }
-
-    fn seed(&self, value: &Spanned<DeValue>) -> Result<u64, Refusal> {
-        match value_of(value.get_ref()) {
-            Some(Value::Whole(seed)) => Ok(seed),
-            _ => Err(self.refuse("seed", value, SEED)),
-        }
-    }
-
-    fn origin<T>(&self, item: &Spanned<T>) -> Origin {
-        Origin::File(self.path.into(), Some(Place::of(self.text, item.span().start)))
-    }
-
-    fn refuse(&self, key: &str, value: &Spanned<DeValue>, expected: impl Into<String>) -> Refusal {
-        Refusal::new(self.origin(value), Invalid::new(key, quoted(self.text, value.span()), expected))
-    }
-
-    fn unknown(&self, key: &Spanned<DeString>, expected: &str) -> Refusal {
-        let name = quoted(self.text, key.span());
-        Refusal::new(self.origin(key), Invalid::new(name, "(an unknown key)", expected))
-    }
-
-    /// The line a byte stands in, for quoting.
-    fn line(&self, byte: usize) -> String {
-        let byte = (0..=byte.min(self.text.len())).rev().find(|&byte| self.text.is_char_boundary(byte)).unwrap_or(0);
-        let start = self.text[..byte].rfind('\n').map_or(0, |newline| newline + 1);
-        let end = self.text[byte..].find('\n').map_or(self.text.len(), |newline| byte + newline);
-        format!("`{}`", quoted(self.text, start..end).trim())
     }
 }
 

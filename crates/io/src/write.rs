@@ -1,10 +1,13 @@
 //! Writing: a file is either whole or not there, and nothing that exists is overwritten unasked.
 
+mod lock;
+
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use crate::Checkpoints;
+use lock::Lock;
 
 /// A file or folder that could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -15,6 +18,14 @@ pub enum WriteError {
     /// The place is taken by something that is not a folder.
     #[error("{}: expected a folder, but this is a file", .0.display())]
     NotAFolder(PathBuf),
+    /// Another process writes into the folder.
+    #[error("{}: in use by {owner}: wait for it, or choose another folder", .path.display())]
+    Taken {
+        /// The folder.
+        path: PathBuf,
+        /// Who has it.
+        owner: String,
+    },
     /// The system refused.
     #[error("cannot write {}: {source}", .path.display())]
     System {
@@ -31,10 +42,11 @@ impl WriteError {
     }
 }
 
-/// The folder a run writes into.
+/// The folder a run writes into; no other process can have it at the same time.
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
+    _lock: Lock,
 }
 
 impl Folder {
@@ -55,7 +67,7 @@ impl Folder {
             Err(error) if error.kind() == io::ErrorKind::NotADirectory => return Err(WriteError::NotAFolder(path.into())),
             Err(error) => return Err(WriteError::system(path)(error)),
         }
-        Ok(Self { path: path.into() })
+        Ok(Self { path: path.into(), _lock: Lock::take(path)? })
     }
 
     /// A new folder `parent/name`, or `parent/name-2`, `parent/name-3`, ... when that exists. The system creates it or
@@ -73,7 +85,8 @@ impl Folder {
                 Err(error) => return Err(WriteError::system(&path)(error)),
             }
         }
-        Ok(Self { path })
+        let lock = Lock::take(&path)?;
+        Ok(Self { path, _lock: lock })
     }
 
     /// A folder that a run has written into before, and goes on to. What that run was writing when it ended is removed.
@@ -82,6 +95,7 @@ impl Folder {
     /// When it is not there.
     pub fn again(path: &Path) -> Result<Self, WriteError> {
         let here = fs::read_dir(path).map_err(WriteError::system(path))?;
+        let lock = Lock::take(path)?;
         let below = ["checkpoints", "pictures"].into_iter().filter_map(|name| fs::read_dir(path.join(name)).ok());
         for entry in below.chain([here]).flatten().flatten() {
             let name = entry.file_name();
@@ -91,7 +105,7 @@ impl Folder {
                 let _ = fs::remove_file(entry.path());
             }
         }
-        Ok(Self { path: path.into() })
+        Ok(Self { path: path.into(), _lock: lock })
     }
 
     /// Removes what an earlier run left here that could be taken for the results of the next one, or for its state.
@@ -203,6 +217,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let first = Folder::at(folder.path(), false).unwrap();
         first.write("pictures/a.png", b"old").unwrap();
+        drop(first);
         assert!(matches!(Folder::at(folder.path(), false), Err(WriteError::NotEmpty(_))));
         Folder::at(folder.path(), true).unwrap().write("pictures/a.png", b"new").unwrap();
         assert_eq!(fs::read(folder.path().join("pictures/a.png")).unwrap(), b"new");

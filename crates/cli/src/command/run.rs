@@ -4,12 +4,19 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
-use corpuscle_io::{Folder, Registry};
+use corpuscle_core::Invalid;
+use corpuscle_experiments::Simulation;
+use corpuscle_io::trajectory::Plan;
+use corpuscle_io::{Folder, Origin, Refusal, Registry};
 
+use super::conduct::Conduct;
 use super::{Subject, positive};
+use crate::console;
 use crate::session::Session;
 use crate::trouble::Trouble;
-use crate::{console, keeper};
+
+/// Frames of a trajectory after the first, unless told otherwise.
+const FRAMES: f64 = 100.0;
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -21,44 +28,46 @@ pub(crate) struct Arguments {
     /// Overwrite files in a folder that is not empty.
     #[arg(long, requires = "out")]
     force: bool,
-    /// Threads to use [default: all cores]. Results do not depend on it.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
     /// How long to run, as the parameter `duration` where the experiment has one [default: what it needs].
     #[arg(long, value_name = "T", value_parser = positive, allow_hyphen_values = true)]
     duration: Option<f64>,
-    /// Leave out the pictures.
-    #[arg(long)]
-    no_pictures: bool,
-    /// Print one line only.
-    #[arg(long)]
-    quiet: bool,
+    /// Write all particles into this file in the folder of the run: extended XYZ (.xyz), LAMMPS dump (.dump) or GSD (.gsd).
+    #[arg(long, value_name = "FILE")]
+    trajectory: Option<String>,
+    /// Physical time from frame to frame of the trajectory [default: a hundredth of the run].
+    #[arg(long, value_name = "T", value_parser = positive, allow_hyphen_values = true, requires = "trajectory")]
+    every: Option<f64>,
     #[command(flatten)]
-    checkpoints: keeper::Options,
+    conduct: Conduct,
 }
 
 pub(crate) fn run(arguments: &Arguments, registry: Registry) -> Result<ExitCode, Trouble> {
+    let conduct = &arguments.conduct;
     let mut scenario = arguments.subject.scenario(registry)?;
     if let Some(duration) = arguments.duration {
         scenario.set_duration(duration)?;
     }
-    use_threads(arguments.threads);
+    conduct.threads.set();
     let simulation = scenario.start()?;
+    let end = scenario.duration.unwrap_or_else(|| simulation.end());
+    let trajectory = trajectory(arguments, simulation.as_ref(), end)?;
     let folder = match &arguments.out {
         Some(path) => Folder::at(path, arguments.force)?,
         None => Folder::fresh(Path::new("results"), scenario.name())?,
     };
-    if !arguments.quiet {
+    if !conduct.quiet {
         console::print(&format!("{} ({}), seed {}\n", scenario.title(), scenario.name(), scenario.settings.seed))?;
     }
-    let policy = arguments.checkpoints.policy(!arguments.no_pictures);
-    Session::begin(scenario, simulation, folder, policy, arguments.quiet)?.conduct()
+    let policy = conduct.checkpoints.policy(!conduct.no_pictures);
+    Session::begin(scenario, simulation, folder, policy, trajectory, conduct.quiet)?.conduct()
 }
 
-/// So many threads, or one for each core.
-pub(super) fn use_threads(threads: Option<u16>) {
-    if let Some(threads) = threads {
-        // Fails only when a pool exists already; none does before this line.
-        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global();
+/// The trajectory that is asked for, if one can be written.
+fn trajectory(arguments: &Arguments, simulation: &dyn Simulation, end: f64) -> Result<Option<Plan>, Refusal> {
+    let Some(file) = &arguments.trajectory else { return Ok(None) };
+    let refuse = |invalid| Refusal::new(Origin::CommandLine, invalid);
+    if simulation.frame().is_none() {
+        return Err(refuse(Invalid::new("trajectory", file, "nothing: this experiment has no particles to show in files")));
     }
+    Plan::new(file, arguments.every.unwrap_or(end / FRAMES), end).map(Some).map_err(refuse)
 }

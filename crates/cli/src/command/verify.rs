@@ -10,7 +10,7 @@ use corpuscle_io::{Registry, Scenario};
 use corpuscle_observe::Check;
 use corpuscle_observe::scores::{Scores, mean_square_over_runs};
 
-use super::run::use_threads;
+use super::conduct::Threads;
 use crate::console;
 use crate::trouble::Trouble;
 
@@ -25,9 +25,8 @@ pub(crate) struct Arguments {
     /// The first seed; the others follow it.
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     first: u64,
-    /// Threads to use [default: all cores]. Results do not depend on it.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
+    #[command(flatten)]
+    threads: Threads,
 }
 
 /// Scores beyond which chance is no explanation, as for a single check.
@@ -45,7 +44,7 @@ pub(crate) fn verify(arguments: &Arguments, registry: Registry) -> Result<ExitCo
         };
         arguments.names.iter().map(find).collect::<Result<_, Trouble>>()?
     };
-    use_threads(arguments.threads);
+    arguments.threads.set();
     // The rows of each experiment follow as soon as it is done.
     console::print("| experiment | quantity | runs | mean z | mean z² | verdict |\n|---|---|---|---|---|---|\n")?;
     let mut sound = true;

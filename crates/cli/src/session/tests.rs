@@ -71,7 +71,7 @@ fn a_run_that_breaks_its_invariant_ends_with_its_last_good_checkpoint() {
     let policy = Policy { wall: None, time: Some(2.0), work: None, keep: 3, stay: false, pictures: false };
     let scenario = Scenario::new(&LEAKY);
     let simulation = scenario.start().unwrap();
-    let trouble = Session::begin(scenario, simulation, folder, policy, true).unwrap().conduct().unwrap_err();
+    let trouble = Session::begin(scenario, simulation, folder, policy, None, true).unwrap().conduct().unwrap_err();
     let words = trouble.to_string();
     assert!(words.contains("the largest overlap is 1.0e-1") && words.contains("of t = 4,"), "{words}");
     assert_eq!(format!("{:?}", trouble.exit_code()), format!("{:?}", ExitCode::from(1)));

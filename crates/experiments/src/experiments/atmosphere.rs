@@ -20,6 +20,7 @@ use corpuscle_scene::{Camera, Colouring, Scene};
 
 use crate::gas::{self, Species};
 use crate::replicas::{Member, Replicas, Watch, energy_check, honesty};
+use crate::tally::Tally;
 use crate::{Experiment, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, peek};
 use theory::Profile;
 
@@ -400,7 +401,7 @@ impl<const D: usize> Simulation for Atmosphere<D> {
     fn draw(&self, scene: &mut Scene) {
         scene.clear();
         let column = &self.columns.members[0];
-        drawing::add_event_driven(scene, &column.engine, column.started, |i| f64::from(column.species[i]));
+        drawing::add_event_driven(scene, &column.engine, &Tally::default(), column.started, |i| f64::from(column.species[i]));
         scene.colouring = Colouring::Species(vec!["light".into(), "heavy".into()]);
         // The thin upper half is left out of the first view.
         let mut upper = self.set.boundary.upper.to_three();

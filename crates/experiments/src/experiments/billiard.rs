@@ -20,6 +20,7 @@ use corpuscle_observe::{Chart, Check, Curves, Estimate};
 use corpuscle_scene::{Colour, Colouring, Scene, TrailPoint};
 
 use crate::replicas::{Replicas, energy_check, honesty};
+use crate::tally::Tally;
 use crate::{Experiment, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, peek};
 use table::{Layout, Table, Twins};
 
@@ -229,7 +230,7 @@ impl Simulation for Billiard {
     fn draw(&self, scene: &mut Scene) {
         scene.clear();
         let bundle = self.twins.bundle();
-        drawing::add_event_driven(scene, bundle, 0.0, |i| i as f64);
+        drawing::add_event_driven(scene, bundle, &Tally::default(), 0.0, |i| i as f64);
         scene.colouring = Colouring::Uniform(Colour::Accent(1));
         let boundary = bundle.boundary();
         for ray in 0..TRAILS.min(bundle.particle_count()) {

@@ -21,6 +21,7 @@ use corpuscle_scene::{Colouring, Scene};
 
 use crate::gas::{self, Species};
 use crate::replicas::{Member, Replicas, honesty};
+use crate::tally::Tally;
 use crate::{Experiment, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, peek};
 
 /// The registry's entry.
@@ -336,7 +337,7 @@ impl<const D: usize> Simulation for Granular<D> {
     fn draw(&self, scene: &mut Scene) {
         scene.clear();
         let crowd = &self.crowd.members[0].grains;
-        drawing::add_event_driven(scene, &crowd.engine, crowd.started, |_| 0.0);
+        drawing::add_event_driven(scene, &crowd.engine, &Tally::default(), crowd.started, |_| 0.0);
         let temperature = crowd.temperature();
         scene.colouring = Colouring::Speed { most: 2.5 * (D as f64 * temperature).sqrt(), unit: String::new() };
         scene.title = EXPERIMENT.title.into();

@@ -298,7 +298,7 @@ impl Simulation for Fluid {
         scene.clear();
         let particles = self.engine.particles();
         scene.time = self.time();
-        drawing::add_particles(scene, scene.time, particles, |_| 0.5, |_| 0.0);
+        drawing::add_particles(scene, scene.time, particles, |_| 0.5);
         drawing::add_boundary(scene, self.engine.boundary(), scene.time);
         scene.colouring = Colouring::Speed { most: 3.0 * self.state.temperature.sqrt(), unit: String::new() };
         scene.title = EXPERIMENT.title.into();

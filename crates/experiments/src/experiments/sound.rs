@@ -20,6 +20,7 @@ use corpuscle_observe::{Chart, Check, Estimate, theory};
 use corpuscle_scene::{Camera, Colouring, Scene};
 
 use crate::replicas::{Replicas, energy_check, honesty};
+use crate::tally::Tally;
 use crate::{Experiment, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, peek};
 use tube::{BINS, Set, Tube};
 
@@ -233,7 +234,7 @@ impl Simulation for Sound {
         let thermal = self.set.temperature().sqrt();
         // Coloured by the velocity along the tube, averaged over neighbours: of single particles one sees only heat.
         let drift = tube.drift();
-        drawing::add_event_driven(scene, tube.engine(), tube.started(), |i| drift[i] / thermal);
+        drawing::add_event_driven(scene, tube.engine(), &Tally::default(), tube.started(), |i| drift[i] / thermal);
         scene.camera = Camera::fit(tube.engine().boundary().lower.to_three(), tube.engine().boundary().upper.to_three());
         scene.colouring =
             Colouring::Value { name: "velocity to the right".into(), unit: "√(kT/m)".into(), least: -0.4, most: 0.4 };

@@ -1,6 +1,7 @@
 //! From the description of a free system to an engine, every number checked on the way.
 
 mod boundary;
+mod imported;
 mod placement;
 mod rules;
 
@@ -119,9 +120,12 @@ pub(super) fn build<const D: usize>(system: &System, seed: u64) -> Result<Built<
     let mut names: Vec<String> = vec![];
     let mut particles = Particles::<D>::new();
     let (pins, trails) = placement::place_singles(system, &mut names, &mut particles)?;
-    placement::generate(system, &boundary, seed, &mut names, &mut particles)?;
+    match &system.start {
+        Some(start) => imported::place(system, start, &boundary, seed, &mut names, &mut particles)?,
+        None => placement::generate(system, &boundary, seed, &mut names, &mut particles)?,
+    }
     if particles.is_empty() {
-        return Err(Invalid::new("particle", 0, "at least one particle, in [[particle]] or [[species]]"));
+        return Err(Invalid::new("particle", 0, "at least one particle, in [[particle]], [[species]] or [start]"));
     }
     let held = pins.iter().flat_map(|pin| pin.axes).filter(|&held| held).count();
     let engine = match system.engine {
@@ -286,6 +290,10 @@ fn not_negative(key: &str, value: f64) -> Result<(), Invalid> {
 
 /// The error of an engine, which counts particles and knows no file, with the key that stands in the file.
 fn located(system: &System, error: Invalid) -> Invalid {
+    if system.start.is_some() && error.key.contains("particle") {
+        let value = format!("{} {}", error.key, error.value);
+        return Invalid { key: "start.file".into(), value, ..error };
+    }
     let index = |text: &str| text.parse::<usize>().ok();
     let words: Vec<&str> = error.key.split(' ').collect();
     let key = match words[..] {

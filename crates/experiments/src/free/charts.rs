@@ -4,7 +4,8 @@ use corpuscle_observe::SpeedDistribution;
 use corpuscle_observe::chart::{Axis, Chart, Scale, Series, Style};
 
 use super::build::AnyEngine;
-use super::run::{Free, Sample};
+use super::run::Free;
+use super::sample::Sample;
 use super::spec::Observable;
 
 /// Points of a chart.

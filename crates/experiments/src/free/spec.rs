@@ -1,9 +1,13 @@
 //! The description of a free system, as a scenario file spells it.
 
+mod start;
 mod walls;
+
+use std::sync::Arc;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+pub use start::{Imported, Start};
 pub use walls::{Cylinder, Grown, Peg, Side, Swing, Wall};
 
 /// A system of the user's own: box, particles, interactions, engine, and what to observe for how long.
@@ -38,6 +42,12 @@ pub struct System {
     /// How generated particles come to their places: on a lattice when not given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub growth: Option<Grown>,
+    /// Particles of a frame of a trajectory; then no others.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start: Option<Start>,
+    /// Those particles, once the file has been read.
+    #[serde(skip)]
+    pub imported: Option<Arc<Imported>>,
     /// Particles generated in number, without overlap.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub species: Vec<Species>,

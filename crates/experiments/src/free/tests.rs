@@ -9,6 +9,7 @@ use super::*;
 use crate::Action;
 
 mod laws;
+mod start;
 mod walls;
 
 fn read(text: &str) -> System {

@@ -1,12 +1,15 @@
 //! What is checked of a free system: conservation laws, and the equation of state where one is known.
 
 use corpuscle_core::particles::ball_volume;
-use corpuscle_core::{Axis as Faces, Vector};
+use corpuscle_core::{Axis as Faces, Engine, Vector};
 use corpuscle_observe::{Check, Estimate, blocking, theory};
 
 use super::build::AnyEngine;
 use super::run::Free;
+use super::sample::Sample;
 use super::spec::Observable;
+use crate::Honesty;
+use crate::horizon::precision_horizon;
 
 /// Energy a time-driven run may lose or win of the largest kinetic energy and still be called conservative: a choice, not a
 /// theorem. A slope against zero would be no better: the energy error of a few bodies is quasi-periodic and that of a
@@ -45,14 +48,19 @@ impl<const K: usize> Conserved<K> {
 impl<const D: usize> Free<D> {
     pub(super) fn all_checks(&self) -> Vec<Check> {
         let mut checks = match &self.engine {
-            AnyEngine::Event(_) => self.energy_of_collisions().into_iter().collect(),
+            AnyEngine::Event(_) => vec![self.energy_of_collisions()],
             AnyEngine::Time(_) if self.conservative => vec![Check::at_most(
                 "largest energy error, over the largest kinetic energy",
                 self.motion.relative(),
                 ENERGY_BOUND,
                 "forces with a potential conserve energy; a hundredth is what is allowed to the integrator",
             )],
-            AnyEngine::Time(_) => vec![],
+            AnyEngine::Time(_) => vec![Check::at_most(
+                "largest rise of the energy, over the largest kinetic energy",
+                self.rise_over_motion(),
+                ENERGY_BOUND,
+                "damping only takes energy; a hundredth is what is allowed to the integrator",
+            )],
         };
         if self.closed {
             checks.push(Check::at_most(
@@ -69,18 +77,23 @@ impl<const D: usize> Free<D> {
         checks
     }
 
-    fn energy_of_collisions(&self) -> Option<Check> {
-        if !self.isolated() {
-            return None;
-        }
+    fn rise_over_motion(&self) -> f64 {
+        let largest = self.samples.iter().map(|sample| sample.kinetic).fold(0.0, f64::max);
+        if self.rise > 0.0 { self.rise / largest } else { 0.0 }
+    }
+
+    /// What collisions do to the energy, apart from what warm and moving walls gave.
+    fn energy_of_collisions(&self) -> Check {
+        let walls = if self.isolated() { "" } else { " less what walls gave" };
         if self.elastic {
-            let (drift, why) = (self.energy.relative(), "elastic collisions, double precision");
-            return Some(Check::at_most("largest energy drift, relative", drift, ROUNDING_BOUND, why));
+            let quantity = format!("largest energy drift{walls}, relative");
+            return Check::at_most(quantity, self.energy.relative(), ROUNDING_BOUND, "elastic collisions, double precision");
         }
-        let largest = self.samples.iter().map(|sample| sample.kinetic + sample.potential.abs()).fold(0.0, f64::max);
+        let scale = |sample: &Sample| sample.kinetic + sample.potential.abs();
+        let largest = self.samples.iter().map(scale).fold(0.0, f64::max) + self.given.energy().abs();
         let rise = if self.rise > 0.0 { self.rise / largest } else { 0.0 };
-        let why = "inelastic collisions only take energy";
-        Some(Check::at_most("largest rise of the energy, relative", rise, ROUNDING_BOUND, why))
+        let quantity = format!("largest rise of the energy{walls}, relative");
+        Check::at_most(quantity, rise, ROUNDING_BOUND, "inelastic collisions only take energy")
     }
 
     /// Whether all particles are hard spheres of one radius and mass, in equilibrium among themselves.
@@ -144,5 +157,39 @@ impl<const D: usize> Free<D> {
             }
         }
         pressures
+    }
+
+    /// Numerical quality.
+    pub(super) fn quality(&self) -> Honesty {
+        let (engine, work, work_unit, largest_overlap) = match &self.engine {
+            AnyEngine::Event(engine) => {
+                let counts = engine.counts();
+                let diameter = 2.0 * self.start_particles.radius.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+                let overlap = engine.boundary().largest_overlap(&engine.snapshot()) / diameter;
+                ("event-driven".into(), counts.collisions + counts.wall_collisions, "collisions", Some(overlap))
+            }
+            AnyEngine::Time(engine) => (format!("time-driven, {}", engine.integrator().name()), engine.steps(), "steps", None),
+        };
+        Honesty {
+            engine,
+            work,
+            work_unit,
+            largest_overlap,
+            energy_drift: match &self.engine {
+                AnyEngine::Event(_) => self.elastic.then(|| self.energy.relative()),
+                AnyEngine::Time(_) => self.conservative.then(|| self.motion.relative()),
+            },
+            momentum_drift: self.closed.then(|| self.momentum.relative()),
+            angular_momentum_drift: self.keeps_angular_momentum().then(|| self.angular_momentum.relative()),
+            rejected_events: match &self.engine {
+                AnyEngine::Event(engine) => Some(engine.counts().stale),
+                AnyEngine::Time(_) => None,
+            },
+            precision_horizon: match &self.engine {
+                AnyEngine::Event(engine) => precision_horizon(engine),
+                AnyEngine::Time(_) => None,
+            },
+            ..Honesty::default()
+        }
     }
 }

@@ -13,7 +13,7 @@ fn started() -> Box<dyn Simulation> {
 fn run() -> Run {
     let policy = Policy { wall: Some(60.0), time: None, work: Some(1000), keep: 2, stay: false, pictures: true };
     let pictures = vec![(0.0, "at rest".into())];
-    Run { scenario: Scenario::new(&OSCILLATOR).to_toml(), time: 0.7, wall: 12.5, moments: 1, pictures, policy }
+    Run { scenario: Scenario::new(&OSCILLATOR).to_toml(), time: 0.7, wall: 12.5, moments: 1, pictures, policy, trajectory: None }
 }
 
 fn good() -> Vec<u8> {

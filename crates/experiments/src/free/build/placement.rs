@@ -98,8 +98,10 @@ pub(super) fn generate<const D: usize>(
             particles.push(place, Vector::from_fn(|_| spread * random.normal()), group.mass, group.radius, kind);
         }
     }
+    // Particles placed by hand keep the velocities they were given, and then so do all.
     if system.particles.is_empty() {
-        to_temperature(system, boundary, particles);
+        let wanted = system.species.iter().map(|group| group.count as f64 * group.temperature).sum::<f64>();
+        to_temperature(wanted / particles.len() as f64, boundary, particles);
     }
     Ok(())
 }
@@ -175,15 +177,13 @@ fn grow<const D: usize>(system: &System, growth: &Grown, boundary: &Boundary<D>,
     })
 }
 
-/// Brings what was drawn to exactly the temperature asked for, the mean over the species, and to rest as a whole where
-/// total momentum is conserved. Particles placed by hand keep the velocities they were given, and then so do all.
-fn to_temperature<const D: usize>(system: &System, boundary: &Boundary<D>, particles: &mut Particles<D>) {
+/// Brings what was drawn to exactly the temperature asked for, and to rest as a whole where total momentum is conserved.
+pub(super) fn to_temperature<const D: usize>(wanted: f64, boundary: &Boundary<D>, particles: &mut Particles<D>) {
     let count = particles.len();
     let closed = boundary.conserves_momentum() && count > 1;
     if closed {
         stop_drift(particles);
     }
-    let wanted = system.species.iter().map(|group| group.count as f64 * group.temperature).sum::<f64>() / count as f64;
     let scale = (wanted / particles.temperature(D * if closed { count - 1 } else { count })).sqrt();
     if scale.is_finite() {
         particles.velocity.iter_mut().for_each(|v| *v = *v * scale);
