@@ -13,8 +13,8 @@ use blocks::{LargestMoves, take_over};
 pub(crate) use rows::{ALL, Image, NONE, Near, Rows};
 use rows::{Map, Prune, Search, rounded_up};
 
-/// Entries of a list from which more than one thread is worth having.
-const WORTH_THREADS: usize = 10_000;
+/// Entries of a list from which more than one thread is worth waking: that takes as long as a few thousand of them.
+const WORTH_THREADS: usize = 50_000;
 /// What the first list may hold a block.
 const GUESS: usize = 64;
 /// Shares a thread, where there is more than one: whoever is held up leaves some to the others.

@@ -9,10 +9,13 @@ use rayon::Yield;
 pub(crate) const CHUNK: usize = 2048;
 /// How long a thread looks for work before it may fall asleep: about as long as one needs to wake.
 const PATIENCE: Duration = Duration::from_micros(50);
+/// How long before it gives way to whoever else needs its processor: longer than what is between two passes.
+const CLAIM: Duration = Duration::from_micros(20);
 
-/// Whether simple passes over so many particles should be shared among threads that are awake.
+/// Whether simple passes over so many particles should be shared among threads: what one moves, another then has to fetch from its
+/// cache, and that takes as long as to move some ten thousand.
 pub(crate) fn are_worth_it(particles: usize) -> bool {
-    particles >= 4 * CHUNK && rayon::current_num_threads() > 1
+    particles >= 12 * CHUNK && rayon::current_num_threads() > 1
 }
 
 /// Does work of many short passes by the threads of the pool, which look for their shares of the next one without falling asleep
@@ -39,6 +42,8 @@ fn look_for_work(home: Option<usize>, done: &AtomicBool) {
     while !done.load(Ordering::Relaxed) && last.elapsed() < PATIENCE {
         if rayon::yield_now() == Some(Yield::Executed) {
             last = Instant::now();
+        } else if last.elapsed() < CLAIM {
+            std::hint::spin_loop();
         } else {
             std::thread::yield_now();
         }
