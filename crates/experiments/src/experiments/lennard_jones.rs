@@ -228,7 +228,7 @@ impl Fluid {
         // The kinetic part is k T by construction: the mean, known exactly, in place of the sample.
         self.pressures.push(self.state.density * self.state.temperature + self.engine.virial() / (3.0 * volume) + pressure);
         self.temperatures.push(particles.temperature(3 * (count - 1)));
-        if self.schedule.count() % STRUCTURE == 0 {
+        if self.schedule.count().is_multiple_of(STRUCTURE) {
             self.structure.add(particles);
         }
     }
