@@ -159,14 +159,22 @@ impl MovingPiston {
         self.candidates.last().map_or(self.horizon, |candidate| candidate.time).min(self.stop_time)
     }
 
-    /// Tests all particles, `(id, place, stamp, flight)` each, and keeps the earliest contacts.
-    fn search<'a, const D: usize>(&mut self, field: Vector<D>, particles: impl Iterator<Item = (usize, u32, u32, &'a Flight<D>)>) {
+    /// Tests all particles, `(id, place, stamp, flight)` each, and keeps the earliest contacts. What rounding puts before `now`
+    /// happens now: the calendar does not look back.
+    fn search<'a, const D: usize>(
+        &mut self,
+        now: f64,
+        field: Vector<D>,
+        particles: impl Iterator<Item = (usize, u32, u32, &'a Flight<D>)>,
+    ) {
         let mut found = std::mem::take(&mut self.candidates);
         found.clear();
         self.horizon = f64::INFINITY;
         for (id, particle, stamp, flight) in particles {
             let time = self.contact_time(id, flight, field);
-            if time < f64::INFINITY && time <= self.horizon {
+            // Those that never meet may have a time that is no number.
+            let time = if time < f64::INFINITY { time.max(now) } else { continue };
+            if time <= self.horizon {
                 found.push(Candidate { time, id: id as u32, particle, stamp });
                 if found.len() == 2 * KEPT {
                     found.select_nth_unstable_by(KEPT - 1, Candidate::order);
@@ -181,7 +189,7 @@ impl MovingPiston {
         let stop = |k: usize, sign: f64| {
             self.time + upward_passage(sign * (self.state.stops[k] - self.state.position), sign * self.state.velocity, sign * a)
         };
-        self.stop_time = stop(0, -1.0).min(stop(1, 1.0));
+        self.stop_time = stop(0, -1.0).min(stop(1, 1.0)).max(now);
     }
 
     /// At a stop: it bounces, or lies still if it is at rest there.
@@ -247,7 +255,7 @@ impl<const D: usize> EventDriven<D> {
     pub(crate) fn search_for_piston(&mut self) {
         let Some(mut piston) = self.piston.take() else { return };
         let particles = self.flights.iter().enumerate().map(|(i, flight)| (self.id(i), i as u32, self.plans[i].stamp, flight));
-        piston.search(self.rules.field, particles);
+        piston.search(self.now, self.rules.field, particles);
         self.piston = Some(piston);
         self.counts.predictions += 1;
     }
