@@ -82,9 +82,10 @@ fn sound() {
 }
 
 #[test]
+#[ignore = "takes minutes"]
 fn lennard_jones() {
-    agrees_over_more_seeds("lennard-jones", &[("duration", "30")], 14);
-    repeats("lennard-jones", &[("state", "gas"), ("particles", "256"), ("duration", "6")]);
+    agrees_over_more_seeds("lennard-jones", &[], 16);
+    repeats("lennard-jones", &[("particles", "256")]);
     assert_eq!(refused("lennard-jones", &[("state", "solid")]), "state");
 }
 
