@@ -109,7 +109,7 @@ fn a_membrane_swings_as_its_mode_does_beside_the_time_of_its_memory() {
         let report = report(&["membrane", "--particles", "2500", "--threads", threads, "--seconds", "0.1"]);
         let number = numbers(&report);
         assert!((number("amplitude_of_mode") - number("amplitude_of_mode_theory")).abs() < 1e-9, "{report:#}");
-        let floor = 264.0 * 2500.0 / number("memory_bytes_per_second") * 1e3;
+        let floor = 104.0 * 2500.0 / number("memory_bytes_per_second") * 1e3;
         assert!((number("memory_floor_milliseconds_per_step") / floor - 1.0).abs() < 1e-12);
         assert!((number("share_of_memory_floor") * number("milliseconds_per_step") / floor - 1.0).abs() < 1e-12);
     }

@@ -14,7 +14,7 @@ use corpuscle_io::Checkpoints;
 use serde_json::Value;
 
 /// About two seconds of discs.
-const GAS: &str = "engine = \"event\"\nduration = 600.0\nobserve = [\"temperature\", \"pressure\"]\n[box]\nlower = [0.0, 0.0]\n\
+const GAS: &str = "engine = \"event\"\nduration = 3000.0\nobserve = [\"temperature\", \"pressure\"]\n[box]\nlower = [0.0, 0.0]\n\
                    upper = [40.0, 40.0]\nfaces = \"walls\"\n[[species]]\ncount = 500\nradius = 0.5\n";
 
 fn corpuscle(folder: &Path, arguments: &[&str]) -> Command {
@@ -260,7 +260,8 @@ fn a_disk_that_is_full_or_read_only() {
     ] {
         let script = format!(
             "cd $disk; $corpuscle run {} --out out --no-pictures --quiet --checkpoint-wall 0.1 2> /dev/shm/said.$$ & \
-             run=$!; until ls out/checkpoints/*.checkpoint > /dev/null 2>&1; do sleep 0.01; done; {spoil}; wait $run; echo code $?; \
+             run=$!; until ls out/checkpoints/*.checkpoint > /dev/null 2>&1; do sleep 0.01; done; \
+             kill -STOP $run; {spoil}; kill -CONT $run; wait $run; echo code $?; \
              cat /dev/shm/said.$$; rm /dev/shm/said.$$; {mend}; $corpuscle resume out --quiet; echo resumed $?; cat out/*.csv | cksum; \
              rm -r out",
             gas.display()

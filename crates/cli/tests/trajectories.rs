@@ -52,7 +52,8 @@ fn found(reader: &str, file: &Path) -> Vec<Value> {
 }
 
 fn numbers(value: &Value) -> Vec<f64> {
-    let items = value.as_array().unwrap_or_else(|| panic!("no list: {value}"));
+    assert!(value.is_array(), "no list: {value}");
+    let items = value.as_array().unwrap();
     items
         .iter()
         .flat_map(|item| item.as_array().map_or_else(|| vec![item.clone()], Clone::clone))

@@ -62,7 +62,7 @@ fn check<const D: usize>(
 }
 
 /// The fingerprints of one kind of box in the plane and in space.
-fn both(name: &str, kind: impl Kind, golden: [u64; 2]) -> Vec<String> {
+fn both(name: &str, kind: &impl Kind, golden: [u64; 2]) -> Vec<String> {
     let (plane, space) = (kind.of::<2>(), kind.of::<3>());
     let plane = check(name, plane.0, plane.1, 80, 20.0, golden[0]);
     plane.into_iter().chain(check(name, space.0, space.1, 240, 12.0, golden[1])).collect()
@@ -141,17 +141,17 @@ const LISTS: u64 = 0xb3aa_6ba7_8010_b416;
 #[test]
 fn of_every_kind_of_box() {
     let wrong: Vec<String> = [
-        both("reflecting walls", Reflecting, REFLECTING),
-        both("a periodic axis between walls, and a field", Mixed, MIXED),
-        both("warm walls", Warm, WARM),
-        both("moving walls", Moving, MOVING),
-        both("a plate with a hole that goes, a wall that opens", Opening, OPENING),
-        both("obstacles in a field", Furnished, FURNISHED),
-        both("open space", OpenSpace, OPEN),
-        both("square wells", Wells, WELLS),
-        both("square shoulders between walls", Shoulders, SHOULDERS),
-        both("a loaded piston on a warm gas", Pushed, PISTON),
-        both("viscoelastic grains in a field", Grains, GRAINS),
+        both("reflecting walls", &Reflecting, REFLECTING),
+        both("a periodic axis between walls, and a field", &Mixed, MIXED),
+        both("warm walls", &Warm, WARM),
+        both("moving walls", &Moving, MOVING),
+        both("a plate with a hole that goes, a wall that opens", &Opening, OPENING),
+        both("obstacles in a field", &Furnished, FURNISHED),
+        both("open space", &OpenSpace, OPEN),
+        both("square wells", &Wells, WELLS),
+        both("square shoulders between walls", &Shoulders, SHOULDERS),
+        both("a loaded piston on a warm gas", &Pushed, PISTON),
+        both("viscoelastic grains in a field", &Grains, GRAINS),
     ]
     .concat();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));

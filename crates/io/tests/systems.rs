@@ -33,11 +33,10 @@ struct Draft<'a> {
     faces: Vec<&'static str>,
 }
 
-impl Draft<'_> {
-    fn axis(&self, k: usize) -> &'static str {
-        ["x", "y", "z"][k]
-    }
+/// The name of an axis.
+const AXES: [&str; 3] = ["x", "y", "z"];
 
+impl Draft<'_> {
     fn walled(&mut self) -> Option<usize> {
         let walled: Vec<usize> = (0..self.sides.len()).filter(|&k| self.faces[k] == "walls").collect();
         (!walled.is_empty()).then(|| one_of(self.random, &walled))
@@ -54,12 +53,12 @@ impl Draft<'_> {
         if chance(self.random, 0.25) {
             let k = self.random.below(dimension as u32) as usize;
             self.add("[[partition]]");
-            self.add(&format!("axis = '{}'\nposition = {:?}", self.axis(k), 0.5 * self.sides[k]));
+            self.add(&format!("axis = '{}'\nposition = {:?}", AXES[k], 0.5 * self.sides[k]));
             if chance(self.random, 0.5) {
                 let along = (k + 1) % dimension;
                 self.add(&format!(
                     "hole = {{ along = '{}', from = {:?}, to = {:?} }}",
-                    self.axis(along),
+                    AXES[along],
                     0.3 * self.sides[along],
                     0.6 * self.sides[along]
                 ));
@@ -71,7 +70,7 @@ impl Draft<'_> {
         }
         for side in ["lower", "upper"] {
             if let Some(k) = self.walled().filter(|_| chance(self.random, 0.3)) {
-                self.add(&format!("[[face]]\naxis = '{}'\nside = '{side}'", self.axis(k)));
+                self.add(&format!("[[face]]\naxis = '{}'\nside = '{side}'", AXES[k]));
                 if chance(self.random, 0.6) {
                     let temperature = between(self.random, 0.2, 2.0);
                     self.add(&format!("temperature = {temperature:?}"));
@@ -108,7 +107,7 @@ impl Draft<'_> {
             let (velocity, mass) = (self.random.normal(), between(self.random, 0.5, 30.0));
             let force = if chance(self.random, 0.5) { self.random.normal() } else { 0.0 };
             let (position, stops) = (0.5 * side, [0.1 * side, 0.9 * side]);
-            self.add(&format!("[piston]\naxis = '{}'\nposition = {position:?}\nvelocity = {velocity:?}\nmass = {mass:?}\nforce = {force:?}\nstops = {stops:?}", self.axis(k)));
+            self.add(&format!("[piston]\naxis = '{}'\nposition = {position:?}\nvelocity = {velocity:?}\nmass = {mass:?}\nforce = {force:?}\nstops = {stops:?}", AXES[k]));
         }
         match self.random.below(10) {
             0 => self.add("[collisions]\nrestitution = 0.8\nelastic_below = 0.05"),
@@ -125,7 +124,7 @@ impl Draft<'_> {
         match self.random.below(4) {
             0 => self.add("[forces.lennard_jones]\nsigma = 0.8"),
             1 if self.faces.iter().all(|&faces| faces != "periodic") => {
-                self.add("[forces.gravity]\nconstant = 0.3\nsoftening = 0.3")
+                self.add("[forces.gravity]\nconstant = 0.3\nsoftening = 0.3");
             }
             _ => self.add("[forces.wca]\nsigma = 0.8"),
         }
@@ -158,9 +157,9 @@ fn draft(seed: u64) -> String {
     let _ = writeln!(text, "[box]\nlower = {:?}\nupper = {sides:?}\nfaces = {faces:?}", vec![0.0; dimension]);
     let mut draft = Draft { random, text, sides, faces };
     if hard {
-        draft.furnish()
+        draft.furnish();
     } else {
-        draft.soften()
+        draft.soften();
     }
     if hard && chance(draft.random, 0.1) {
         draft.add("[growth]\nrate = 0.3");

