@@ -91,7 +91,7 @@ fn spoil(file: &Path, change: impl FnOnce(&mut Vec<u8>)) {
 #[test]
 fn a_spoilt_checkpoint_is_named_and_the_one_before_is_used() {
     let folder = prepared();
-    let often = ["--checkpoint-time", "100", "--checkpoints", "3", "--no-pictures", "--quiet"];
+    let often = ["--checkpoint-time", "500", "--checkpoints", "3", "--no-pictures", "--quiet"];
     let output = corpuscle(folder.path(), &[&["run", "gas.toml", "--out", "out"][..], &often].concat()).output().unwrap();
     assert!(ran(&output));
     let files = Checkpoints::of(&folder.path().join("out")).files();

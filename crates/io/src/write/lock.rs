@@ -1,7 +1,7 @@
 //! One process a folder.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{self, Read, Write};
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use super::WriteError;
@@ -22,7 +22,7 @@ impl Lock {
     pub(super) fn take(folder: &Path) -> Result<Self, WriteError> {
         let path = folder.join(FILE);
         loop {
-            let mut file = open(&path).map_err(WriteError::system(&path))?;
+            let file = open(&path).map_err(WriteError::system(&path))?;
             match file.try_lock() {
                 Err(TryLockError::WouldBlock) => {
                     let mut text = String::new();
@@ -40,20 +40,22 @@ impl Lock {
             }
             // Whoever had it may have removed the file after it was opened here.
             if is_at(&file, &path) {
-                let write = file.set_len(0).and_then(|()| writeln!(file, "{}", std::process::id()));
-                write.map_err(WriteError::system(&path))?;
+                // A lock without a name is a lock; and elsewhere than on Unix nobody writes what is locked.
+                let _ = fs::write(&path, format!("{}\n", std::process::id()));
                 return Ok(Self { path, _file: file });
             }
         }
     }
 }
 
-/// Opens the file, which a stranger's folder may have as a link to somewhere else.
+/// Opens the file, which a stranger's folder may have as a link to somewhere else. It is kept open for reading only: what is open for
+/// writing would keep its disk from being made read-only.
 fn open(path: &Path) -> io::Result<File> {
     if fs::symlink_metadata(path).is_ok_and(|there| !there.is_file()) {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is no file"));
     }
-    OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)
+    OpenOptions::new().write(true).create(true).truncate(false).open(path)?;
+    File::open(path)
 }
 
 /// Whether the open file is the one that has this name.

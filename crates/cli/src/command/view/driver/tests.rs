@@ -23,6 +23,15 @@ fn bodies(driver: &mut Driver) -> (f64, Vec<corpuscle_scene::Body>) {
     (scene.time, scene.bodies)
 }
 
+/// Where the renderer draws the bodies: each has its own clock, and is moved to the scene's time.
+fn drawn(scene: &Scene) -> Vec<[f64; 3]> {
+    let place = |body: &corpuscle_scene::Body| {
+        let t = scene.time - body.time;
+        std::array::from_fn(|k| body.position[k] + body.velocity[k] * t + 0.5 * scene.field[k] * t * t)
+    };
+    scene.bodies.iter().map(place).collect()
+}
+
 #[test]
 fn frame_rate_and_interruptions_do_not_change_the_physics() {
     for experiment in REGISTRY {
@@ -59,7 +68,7 @@ fn a_pause_stops_time_and_a_step_moves_it_by_one_picture() {
         let before = driver.now;
         driver.act(Action::Step);
         assert!((driver.now - before - STEP * driver.speed()).abs() < 1e-9 * driver.now.max(1.0));
-        assert_ne!(bodies(&mut driver).1, paused.bodies, "{}", experiment.name);
+        assert_ne!(drawn(&seen(&mut driver)), drawn(&paused), "{}", experiment.name);
         driver.act(Action::TogglePause);
         let before = driver.now;
         driver.pass(0.1, || false);
