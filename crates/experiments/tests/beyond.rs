@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{agrees_over_seeds, checks_on, refused, run};
+use common::{agrees_over_more_seeds, agrees_over_seeds, checks_on, refused, run};
 
 /// Everything the run of one experiment says does not depend on where it stops or on how many threads there are.
 fn repeats(experiment: &str, values: &[(&str, &str)]) {
@@ -87,22 +87,4 @@ fn lennard_jones() {
     agrees_over_more_seeds("lennard-jones", &[], 16);
     repeats("lennard-jones", &[("particles", "256")]);
     assert_eq!(refused("lennard-jones", &[("state", "solid")]), "state");
-}
-
-/// As `agrees_over_seeds`, with as many seeds as it takes for few checks.
-fn agrees_over_more_seeds(experiment: &str, values: &[(&str, &str)], seeds: u64) {
-    let runs: Vec<Vec<f64>> = (1..=seeds)
-        .map(|seed| {
-            let checks = run(experiment, seed, values, 1).checks();
-            assert!(checks.iter().all(|check| check.passed), "seed {seed}: {checks:?}");
-            println!("{seed}: {:.2?}", checks.iter().filter_map(|check| check.z).collect::<Vec<_>>());
-            checks.iter().filter_map(|check| check.z).collect()
-        })
-        .collect();
-    let scores: Vec<f64> = runs.iter().flatten().copied().collect();
-    let n = scores.len() as f64;
-    assert!(n >= 40.0, "only {n} scores");
-    let (mean, square) = (scores.iter().sum::<f64>() / n, scores.iter().map(|z| z * z).sum::<f64>() / n);
-    println!("{n} scores: mean {mean:.3}, mean square {square:.3}");
-    assert!(mean.abs() * n.sqrt() < 4.0 && (square - 1.0).abs() < 4.0 * (2.0 / n).sqrt(), "mean {mean}, mean square {square}");
 }

@@ -26,7 +26,11 @@ fn window(name: &str, set: &[(&str, &str)], language: Language, size: [f32; 2]) 
     }
     let preferences = Preferences { language, theme: Theme::Dark, hints_seen: 9, ..Preferences::default() };
     let runner = Runner::start(scenario.clone(), || {}).unwrap();
-    let state = Window { model: Model::new(REGISTRY, scenario, preferences), runner };
+    harness_of(Window { model: Model::new(REGISTRY, scenario, preferences), runner }, size)
+}
+
+/// The panels of a window, without a stage.
+fn harness_of(state: Window, size: [f32; 2]) -> Harness<'static, Window> {
     Harness::builder()
         .with_size(size)
         .with_context_setup(|context| {
@@ -285,22 +289,7 @@ fn the_window_answers_while_the_engine_is_saturated() {
     runner.order(Order::Play(true));
     runner.order(Order::Speed(100.0));
     let state = Window { model: Model::new(REGISTRY, scenario, preferences), runner };
-    let mut harness = Harness::builder()
-        .with_size([1280.0, 800.0])
-        .with_context_setup(|context| {
-            context.set_fonts(theme::fonts());
-            Theme::Dark.apply(context);
-        })
-        .build_ui_state(
-            |ui, window: &mut Window| {
-                window.runner.refresh();
-                ui::show(ui, &mut window.model, window.runner.snapshot(), &Previews::none(), &mut ui::Blank);
-                for order in window.model.take_orders() {
-                    window.runner.order(order);
-                }
-            },
-            state,
-        );
+    let mut harness = harness_of(state, [1280.0, 800.0]);
     until(&mut harness, "the engine to fall behind", |window| window.runner.snapshot().pace < 0.5);
     let mut slowest = std::time::Duration::ZERO;
     for (key, tab) in [(Key::Num2, Tab::Checks), (Key::Num3, Tab::Honesty), (Key::Num1, Tab::Charts)].repeat(5) {

@@ -302,12 +302,13 @@ impl Simulation for Fluid {
         drawing::add_boundary(scene, self.engine.boundary(), scene.time);
         scene.colouring = Colouring::Speed { most: 3.0 * self.state.temperature.sqrt(), unit: String::new() };
         scene.title = EXPERIMENT.title.into();
-        scene.caption = match (self.energies.last(), self.pressures.last()) {
-            (Some(energy), Some(pressure)) => format!(
-                "U/N = {energy:.3} (known: {:.3})   P = {pressure:.4} (known: {:.4})",
-                self.state.expected[0].mean, self.state.expected[1].mean
-            ),
-            _ => format!("ρ = {}, T = {}", self.state.density, self.state.temperature),
+        scene.caption = if self.energies.is_empty() {
+            format!("ρ = {}, T = {}", self.state.density, self.state.temperature)
+        } else {
+            let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+            let (energy, pressure) = (mean(&self.energies), mean(&self.pressures));
+            let [known_energy, known_pressure] = self.state.expected.map(|known| known.mean);
+            format!("mean so far: U/N = {energy:.3} (known: {known_energy:.3})   P = {pressure:.4} (known: {known_pressure:.4})")
         };
     }
 

@@ -5,6 +5,7 @@
 use corpuscle_core::Invalid;
 use corpuscle_experiments::{Settings, Simulation, find};
 use corpuscle_observe::Check;
+use corpuscle_observe::scores::Scores;
 
 /// Starts an experiment with these values of its parameters.
 pub(crate) fn start(experiment: &str, seed: u64, values: &[(&str, &str)]) -> Result<Box<dyn Simulation>, Invalid> {
@@ -35,17 +36,22 @@ pub(crate) fn checks_on(threads: usize, experiment: &str, seed: u64, values: &[(
 /// held to four standard deviations either way (too small means error bars too large); their mean is held to four
 /// standard errors.
 pub(crate) fn agrees_over_seeds(experiment: &str, values: &[(&str, &str)]) {
-    let mut scores = vec![];
-    for seed in 1..=10 {
+    agrees_over_more_seeds(experiment, values, 10);
+}
+
+/// The same, with as many seeds as it takes for few checks.
+pub(crate) fn agrees_over_more_seeds(experiment: &str, values: &[(&str, &str)], seeds: u64) {
+    let mut scores = Scores::new();
+    for seed in 1..=seeds {
         for check in run(experiment, seed, values, 1).checks() {
             assert!(check.passed, "seed {seed}: {check:?}");
-            scores.extend(check.z);
+            if let Some(z) = check.z {
+                scores.push(z);
+            }
         }
     }
-    let n = scores.len() as f64;
-    assert!(n >= 40.0, "only {n} statistical checks in ten runs");
-    let mean = scores.iter().sum::<f64>() / n;
-    let square = scores.iter().map(|z| z * z).sum::<f64>() / n;
+    let (n, mean, square) = (scores.count() as f64, scores.mean(), scores.mean_square());
+    assert!(n >= 40.0, "only {n} statistical checks in {seeds} runs");
     println!("{n} scores: mean {mean:.3}, mean square {square:.3}");
     assert!(mean.abs() * n.sqrt() < 4.0, "mean of z {mean}");
     assert!((square - 1.0).abs() < 4.0 * (2.0 / n).sqrt(), "mean square of z {square}");
