@@ -1,7 +1,8 @@
 //! Large systems: what the coming events are going to read is asked for in advance, so that nobody waits for memory.
 
+use corpuscle_core::instructions::prefetch;
+
 use crate::engine::EventDriven;
-use crate::lanes::prefetch;
 use crate::plan::Exit;
 use crate::search::Neighbour;
 

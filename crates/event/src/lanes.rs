@@ -118,20 +118,6 @@ impl Lanes for Plain {
     }
 }
 
-/// Asks for an item that will soon be needed, without waiting for it. It is brought into the second cache: what several
-/// events need would crowd out of the first what is at work.
-#[inline]
-pub(crate) fn prefetch<T>(items: &[T], index: usize) {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(item) = items.get(index) {
-        use std::arch::x86_64::{_MM_HINT_T1, _mm_prefetch};
-        // SAFETY: every x86-64 processor has this instruction, and it has no effect but on speed.
-        unsafe { _mm_prefetch::<_MM_HINT_T1>(std::ptr::from_ref(item).cast()) };
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    let _ = (items, index);
-}
-
 #[cfg(target_arch = "x86_64")]
 pub(crate) use x86::Avx2;
 

@@ -8,13 +8,13 @@ mod reach;
 mod region;
 mod sites;
 
+use corpuscle_core::instructions::prefetch;
 use corpuscle_core::{Boundary, Vector};
 
 pub(crate) use candidates::Candidates;
 pub(crate) use cells::Cells;
 pub(crate) use lists::Lists;
 
-use crate::lanes::prefetch;
 use crate::motion::Flight;
 use crate::plan::Exit;
 use crate::search::Images;

@@ -1,5 +1,7 @@
 //! Coordinates that do not obey a force: held fixed, or moved as prescribed.
 
+use std::ops::Range;
+
 use corpuscle_core::{Invalid, Particles};
 
 /// Coordinates of one particle that are held where they are: the ends of a string, a ring on a rod.
@@ -149,6 +151,12 @@ impl Held {
     pub(crate) fn longest_step(&self) -> f64 {
         self.signal.map_or(f64::INFINITY, |signal| signal.longest_step())
     }
+}
+
+/// What is held of these particles, where all that is held is in the order of the particles.
+pub(crate) fn among(held: &[Held], particles: Range<usize>) -> &[Held] {
+    let below = |particle: usize| held.partition_point(|held| held.particle < particle);
+    &held[below(particles.start)..below(particles.end)]
 }
 
 #[cfg(test)]

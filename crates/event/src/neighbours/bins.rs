@@ -1,10 +1,10 @@
 //! A grid of bins: which particles are near a place.
 
+use corpuscle_core::instructions::prefetch;
 use corpuscle_core::{Axis, Boundary, Vector};
 
 use super::candidates::Candidates;
 use super::sites::{Sites, Way, away};
-use crate::lanes::prefetch;
 use crate::pages::filled;
 use crate::search::{Neighbour, home};
 

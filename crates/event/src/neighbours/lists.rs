@@ -1,10 +1,11 @@
 //! Candidates from neighbour lists: for dense systems of about equal spheres.
 
+use corpuscle_core::instructions::prefetch;
 use corpuscle_core::{Boundary, Vector};
 
 use super::bins::Bins;
 use super::candidates::Candidates;
-use crate::lanes::{LANES, prefetch};
+use crate::lanes::LANES;
 use crate::motion::Flight;
 use crate::pages::filled;
 use crate::search::{Images, Neighbour, home, opposite};

@@ -2,11 +2,17 @@
 
 use corpuscle_core::{Axis, Boundary, Instructions, Invalid, Particles, Vector};
 
+mod gather;
+mod lattice;
 mod run;
+mod scatter;
 mod sweep;
 
 use super::{Force, Tensor, add_product, finite, massive, not_negative};
+use crate::constraint::Held;
 use crate::image::NearestImage;
+use crate::motion::Moves;
+use lattice::Lattice;
 use run::{Place, Run, Stretch};
 
 /// A spring, with a dashpot beside it.
@@ -83,9 +89,10 @@ impl Spring {
 }
 
 /// Springs whose first ends are within one block of so many particles are handled together: what is written stays in a cache near the
-/// processor meanwhile, the nearest where there is little to work out.
+/// processor meanwhile.
 const NEAR: usize = 2048;
-const NEAR_LINEAR: usize = 256;
+/// Springs between particles farther apart would need windows that no cache holds.
+const FARTHEST: usize = 16_384;
 
 /// Any number of springs.
 ///
@@ -94,8 +101,8 @@ const NEAR_LINEAR: usize = 256;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Springs {
     given: Vec<Spring>,
-    /// Particles of a block.
-    near: usize,
+    /// How linear springs of a regular arrangement are handled; all others, or at periodic axes, are runs.
+    lattice: Option<Lattice>,
     runs: Vec<Run>,
     /// Where the runs of each block of first ends begin, and the last ends.
     blocks: Vec<usize>,
@@ -108,18 +115,44 @@ pub struct Springs {
 impl Springs {
     /// A network of springs.
     pub fn new(springs: Vec<Spring>) -> Self {
-        let near = if springs.iter().all(Spring::is_linear) { NEAR_LINEAR } else { NEAR };
-        let runs = Run::all(&springs, near);
-        let last = runs.last().map_or(0, |run| run.first() / near + 1);
-        let blocks = (0..=last).map(|block| runs.partition_point(|run| run.first() / near < block)).collect();
+        let lattice = Lattice::new(&springs);
+        let runs = Run::all(&springs, NEAR);
+        let last = runs.last().map_or(0, |run| run.first() / NEAR + 1);
+        let blocks = (0..=last).map(|block| runs.partition_point(|run| run.first() / NEAR < block)).collect();
         let reach = runs.iter().map(Run::reach).max().unwrap_or(0);
         let damped = springs.iter().any(|spring| spring.damping != 0.0);
-        Self { given: springs, near, runs, blocks, reach, damped, instructions: Instructions::detect() }
+        Self { given: springs, lattice, runs, blocks, reach, damped, instructions: Instructions::detect() }
     }
 
     /// The springs.
     pub fn springs(&self) -> &[Spring] {
         &self.given
+    }
+
+    /// Whether [`sweep`](Self::sweep) may be asked for: all ends are near enough in memory, and there is no friction, which would need
+    /// the accelerations before.
+    pub(crate) fn can_sweep(&self) -> bool {
+        self.reach <= FARTHEST && !self.damped
+    }
+
+    /// Kicks and drifts by the accelerations at the present positions, zero along coordinates that are held (in the order of their
+    /// particles); tells what [`kick_and_drift`](crate::motion::kick_and_drift) does.
+    pub(crate) fn sweep<const D: usize>(
+        &self,
+        boundary: &Boundary<D>,
+        particles: &mut Particles<D>,
+        held: &[Held],
+        moves: Moves,
+    ) -> [bool; 2] {
+        match self.lattice(boundary) {
+            Some(lattice) => lattice.sweep(particles, held, moves),
+            None => self.scatter(boundary, particles, held, moves),
+        }
+    }
+
+    /// The lattice, unless nearest images have to be looked for.
+    fn lattice<const D: usize>(&self, boundary: &Boundary<D>) -> Option<&Lattice> {
+        self.lattice.as_ref().filter(|_| !boundary.axes.contains(&Axis::Periodic))
     }
 
     /// The runs with first ends in a block.
@@ -131,15 +164,11 @@ impl Springs {
     fn stretch<const D: usize>(&self, runs: &[Run], boundary: &Boundary<D>, place: Place<'_, D>) {
         let image = NearestImage::new(boundary);
         let periodic = boundary.axes.contains(&Axis::Periodic).then_some(image);
-        let Place { from, position, velocity, mass, alike, acceleration } = place;
+        let Place { from, position, velocity, mass, acceleration } = place;
         for run in runs {
             if !run.is_short() {
-                let alike = alike.filter(|_| periodic.is_none());
-                match run.line(Place { from, position, velocity, mass, alike, acceleration: &mut *acceleration }) {
-                    // Of what wider vectors would read, most is not aligned to them.
-                    Ok(line) => self.instructions.without_avx512().run(line),
-                    Err(place) => self.instructions.run(Stretch { run, image: periodic, place }),
-                }
+                let place = Place { from, position, velocity, mass, acceleration: &mut *acceleration };
+                self.instructions.run(Stretch { run, image: periodic, place });
                 continue;
             }
             for spring in run.springs() {
@@ -167,22 +196,17 @@ impl Springs {
     }
 }
 
-/// The mass of all particles, where it is the same.
-fn alike(mass: &[f64]) -> Option<f64> {
-    let (first, all) = (*mass.first()?, mass.chunks(256));
-    let differ = |chunk: &[f64]| chunk.iter().fold(0, |bits, mass| bits | (mass.to_bits() ^ first.to_bits())) != 0;
-    (!all.into_iter().any(differ)).then_some(first)
-}
-
 impl<const D: usize> Force<D> for Springs {
     fn name(&self) -> &'static str {
         "springs"
     }
 
     fn accelerate(&mut self, _: f64, boundary: &Boundary<D>, particles: &Particles<D>, acceleration: &mut [Vector<D>]) {
+        if let Some(lattice) = self.lattice(boundary) {
+            return lattice.accelerate(particles, acceleration);
+        }
         let Particles { position, velocity, mass, .. } = particles;
-        let place = Place { from: 0, position, velocity, mass, alike: alike(mass), acceleration };
-        self.stretch(&self.runs, boundary, place);
+        self.stretch(&self.runs, boundary, Place { from: 0, position, velocity, mass, acceleration });
     }
 
     fn springs(&self) -> Option<&Springs> {

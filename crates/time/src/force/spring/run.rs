@@ -61,21 +61,6 @@ impl Run {
     pub(super) fn is_short(&self) -> bool {
         self.count < SHORT
     }
-
-    /// What adds the accelerations where forces are `-k r`, component by component, and all masses are alike.
-    pub(super) fn line<'a, const D: usize>(&self, place: Place<'a, D>) -> Result<Line<'a>, Place<'a, D>> {
-        let Self { spring, count } = self;
-        let Some(mass) = place.alike.filter(|_| spring.is_linear()) else { return Err(place) };
-        let start = (spring.first - place.from) * D;
-        Ok(Line {
-            stiffness: spring.stiffness,
-            inverse_mass: 1.0 / mass,
-            reach: self.reach() * D,
-            count: count * D,
-            position: &Vector::components(place.position)[start..],
-            acceleration: &mut Vector::components_mut(place.acceleration)[start..],
-        })
-    }
 }
 
 /// The particles of a stretch of memory, and what their accelerations are added to.
@@ -86,8 +71,6 @@ pub(super) struct Place<'a, const D: usize> {
     /// Read where there is friction.
     pub(super) velocity: &'a [Vector<D>],
     pub(super) mass: &'a [f64],
-    /// The mass of all particles, where it is the same.
-    pub(super) alike: Option<f64>,
     pub(super) acceleration: &'a mut [Vector<D>],
 }
 
@@ -106,7 +89,7 @@ impl<const D: usize> Kernel for Stretch<'_, D> {
     fn run(self) {
         let Self { run, image, place } = self;
         let Run { spring, count } = run;
-        let Place { from, position, velocity, mass, acceleration, .. } = place;
+        let Place { from, position, velocity, mass, acceleration } = place;
         let mut pull = [[0.0; D]; BLOCK];
         let mut block = Block::<D>::new();
         for start in (0..*count).step_by(BLOCK) {
@@ -125,58 +108,6 @@ impl<const D: usize> Kernel for Stretch<'_, D> {
             add(pull, 1.0, &mass[first.clone()], &mut acceleration[first]);
             add(pull, -1.0, &mass[second.clone()], &mut acceleration[second]);
         }
-    }
-}
-
-/// Springs of force `-k r` between equal masses, number by number: whatever the dimension, those of one end are `reach` before
-/// those of the other.
-pub(super) struct Line<'a> {
-    stiffness: f64,
-    inverse_mass: f64,
-    reach: usize,
-    count: usize,
-    position: &'a [f64],
-    acceleration: &'a mut [f64],
-}
-
-impl Kernel for Line<'_> {
-    type Output = ();
-
-    /// Particles at lower ends only, at both, and at upper ends only: each is read and written once.
-    #[inline(always)]
-    fn run(self) {
-        let Self { stiffness, inverse_mass, reach, count, position: r, acceleration: a } = self;
-        let pull = Pull { stiffness, inverse_mass };
-        let lower = reach.min(count);
-        for ((a, r), next) in a[..lower].iter_mut().zip(&r[..lower]).zip(&r[reach..]) {
-            *a += pull.of(next - r);
-        }
-        if reach < count {
-            let (a, r, next) = (&mut a[reach..count], &r[..count + reach], &r[2 * reach..count + reach]);
-            for (((a, before), r), next) in a.iter_mut().zip(r).zip(&r[reach..]).zip(next) {
-                *a = (*a + pull.of(next - r)) - pull.of(r - before);
-            }
-        }
-        let upper = reach.max(count);
-        let (a, r) = (&mut a[upper..count + reach], &r[..count + reach]);
-        for ((a, before), r) in a.iter_mut().zip(&r[upper - reach..]).zip(&r[upper..]) {
-            *a -= pull.of(r - before);
-        }
-    }
-}
-
-/// A linear spring between equal masses.
-#[derive(Clone, Copy)]
-struct Pull {
-    stiffness: f64,
-    inverse_mass: f64,
-}
-
-impl Pull {
-    /// What it adds at this length.
-    #[inline(always)]
-    fn of(self, x: f64) -> f64 {
-        self.inverse_mass * (self.stiffness * x)
     }
 }
 

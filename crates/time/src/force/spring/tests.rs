@@ -3,8 +3,8 @@ use corpuscle_core::{Engine, Random};
 use super::*;
 use crate::{Drive, Integrator, Pin, Signal, TimeDriven};
 
-/// A net with springs in both directions and a few across, in shuffled order and with ends swapped.
-fn net(side: usize, like: Spring) -> (Particles<2>, Vec<Spring>) {
+/// A net with springs in both directions, in shuffled order and with ends swapped; and a few across, or as many along both diagonals.
+fn net(side: usize, like: Spring, regular: bool) -> (Particles<2>, Vec<Spring>) {
     let mut random = Random::new(4, 0);
     let mut beads = Particles::new();
     let mut springs = vec![];
@@ -13,9 +13,13 @@ fn net(side: usize, like: Spring) -> (Particles<2>, Vec<Spring>) {
         let mass = if i < side * side / 2 { 0.7 } else { 0.5 + random.uniform() };
         let place = Vector::from_fn(|k| [(i % side) as f64, (i / side) as f64][k] + 0.2 * random.normal());
         beads.push(place, Vector::from_fn(|_| random.normal()), mass, 0.0, 0);
-        for (neighbour, there) in
-            [(i + 1, !(i + 1).is_multiple_of(side)), (i + side, true), (i + 2 * side + 3, i.is_multiple_of(5))]
-        {
+        let (first, last) = (i.is_multiple_of(side), (i + 1).is_multiple_of(side));
+        let across = [
+            (i + 2 * side + 3, !regular && i.is_multiple_of(5)),
+            (i + side + 1, regular && !last),
+            (i + side - 1, regular && !first),
+        ];
+        for (neighbour, there) in [(i + 1, !last), (i + side, true)].into_iter().chain(across) {
             if there && neighbour < side * side {
                 let (first, second) = if random.below(2) == 0 { (i, neighbour) } else { (neighbour, i) };
                 springs.push(Spring { first, second, ..like });
@@ -30,13 +34,14 @@ fn net(side: usize, like: Spring) -> (Particles<2>, Vec<Spring>) {
 #[test]
 fn runs_are_the_springs_they_were_made_of() {
     let hooke = Spring::new(0, 1, 1.3, 0.0);
-    for like in [
-        hooke,
-        Spring { rest_length: 0.8, ..hooke },
-        Spring { damping: 0.3, ..hooke },
-        Spring { rest_length: 0.8, quadratic: 0.25, cubic: 0.1, damping: 0.2, ..hooke },
+    for (like, regular) in [
+        (hooke, false),
+        (hooke, true),
+        (Spring { rest_length: 0.8, ..hooke }, true),
+        (Spring { damping: 0.3, ..hooke }, false),
+        (Spring { rest_length: 0.8, quadratic: 0.25, cubic: 0.1, damping: 0.2, ..hooke }, false),
     ] {
-        let (beads, springs) = net(67, like);
+        let (beads, springs) = net(67, like, regular);
         let boundary = Boundary::new([-2.0; 2], [70.0; 2], Axis::Open);
         let mut expected = vec![(Vector::ZERO, 0.0); beads.len()];
         for spring in &springs {
@@ -52,9 +57,13 @@ fn runs_are_the_springs_they_were_made_of() {
             }
         }
         let mut force = Springs::new(springs);
+        assert_eq!(force.lattice.is_some(), regular && like == hooke);
         let mut results = vec![];
         for instructions in Instructions::all() {
             force.instructions = instructions;
+            if let Some(lattice) = &mut force.lattice {
+                lattice.instructions = instructions;
+            }
             let mut found = vec![Vector::ZERO; beads.len()];
             force.accelerate(0.0, &boundary, &beads, &mut found);
             for (i, (expected, size)) in expected.iter().enumerate() {
@@ -73,12 +82,18 @@ fn runs_are_the_springs_they_were_made_of() {
 fn particles_move_while_springs_are_stretched() {
     let hooke = Spring::new(0, 1, 1.3, 0.0);
     // More than a few blocks, and enough for threads.
-    for (side, like) in
-        [(12, hooke), (67, Spring { rest_length: 0.8, ..hooke }), (170, hooke), (170, Spring { cubic: 0.1, ..hooke })]
-    {
+    let stiff = Spring { rest_length: 0.8, ..hooke };
+    for (side, like, regular) in [
+        (12, hooke, false),
+        (67, stiff, false),
+        (67, hooke, true),
+        (170, hooke, false),
+        (170, hooke, true),
+        (170, Spring { cubic: 0.1, ..hooke }, false),
+    ] {
         for (axis, alike) in [(Axis::Open, false), (Axis::Open, true), (Axis::Periodic, false)] {
             let engine = |integrator| {
-                let (mut beads, springs) = net(side, like);
+                let (mut beads, springs) = net(side, like, regular);
                 if alike {
                     beads.mass.fill(0.7);
                 }

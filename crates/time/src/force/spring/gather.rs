@@ -1,0 +1,173 @@
+//! What pulls at the particles of a lattice, four numbers at a time, and what is done with it.
+
+use std::ops::Range;
+
+use corpuscle_core::Vector;
+use corpuscle_core::instructions::prefetch;
+
+use crate::lanes::{InLanes, LANES, Lanes};
+use crate::motion::Moves;
+
+/// Numbers of a line of a cache, and vectors.
+const LINE: usize = 8;
+
+/// `a = (sum_n k_n (r_n - r)) / m`, number by number: whatever the dimension, neighbours are as far apart. The sum begins with the
+/// first neighbour.
+pub(super) struct Gather<'a, S, const N: usize> {
+    pub(super) stiffness: [f64; N],
+    pub(super) near: [&'a [f64]; N],
+    pub(super) own: &'a [f64],
+    pub(super) inverse_mass: &'a [f64],
+    /// Where accelerations go.
+    pub(super) sink: S,
+}
+
+/// What takes accelerations.
+pub(super) trait Sink {
+    /// What it has to tell of them all.
+    type Output;
+
+    /// How many it takes.
+    fn len(&self) -> usize;
+    /// Group `g` of them, and where the particles are; `doubts` are zero at first.
+    fn take<V: Lanes>(&mut self, g: usize, r: V, a: V, doubts: &mut [V; 2]);
+    /// One of those after the groups, by its number.
+    fn take_one(&mut self, n: usize, r: f64, a: f64);
+    /// After the last.
+    fn finish(self, doubts: [[f64; LANES]; 2]) -> Self::Output;
+}
+
+impl<S: Sink, const N: usize> InLanes for Gather<'_, S, N> {
+    type Output = S::Output;
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) -> S::Output {
+        let Self { stiffness, near, own, inverse_mass, mut sink } = self;
+        let groups = own.len() / LANES;
+        let (mut stiff, mut fours) = ([V::splat(0.0); N], [&[][..]; N]);
+        for n in 0..N {
+            (stiff[n], fours[n]) = (V::splat(stiffness[n]), &near[n].as_chunks::<LANES>().0[..groups]);
+        }
+        let (own_fours, inverse_masses) = (&own.as_chunks::<LANES>().0[..groups], &inverse_mass.as_chunks::<LANES>().0[..groups]);
+        let mut doubts = [V::splat(0.0); 2];
+        for g in 0..groups {
+            let (r, mut a) = (V::new(own_fours[g]), V::splat(0.0));
+            for n in 0..N {
+                let pull = stiff[n].mul(V::new(fours[n][g]).sub(r));
+                a = if n == 0 { pull } else { a.add(pull) };
+            }
+            sink.take(g, r, a.mul(V::new(inverse_masses[g])), &mut doubts);
+        }
+        for last in groups * LANES..own.len() {
+            let mut a = 0.0;
+            for n in 0..N {
+                let pull = stiffness[n] * (near[n][last] - own[last]);
+                a = if n == 0 { pull } else { a + pull };
+            }
+            sink.take_one(last, own[last], a * inverse_mass[last]);
+        }
+        sink.finish(doubts.map(V::lanes))
+    }
+}
+
+/// Adds them to others.
+pub(super) struct Add<'a>(pub(super) &'a mut [f64]);
+
+impl Sink for Add<'_> {
+    type Output = ();
+
+    fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    #[inline(always)]
+    fn take<V: Lanes>(&mut self, g: usize, _: V, a: V, _: &mut [V; 2]) {
+        let sum = &mut self.0.as_chunks_mut::<LANES>().0[g];
+        *sum = V::new(*sum).add(a).lanes();
+    }
+
+    #[inline(always)]
+    fn take_one(&mut self, n: usize, _: f64, a: f64) {
+        self.0[n] += a;
+    }
+
+    fn finish(self, _: [[f64; LANES]; 2]) {}
+}
+
+/// Numbers of some particles, to be changed, and others farther on that will soon be needed.
+pub(super) struct Ahead<'a> {
+    now: &'a mut [f64],
+    later: &'a [f64],
+}
+
+impl<'a> Ahead<'a> {
+    /// Of these particles, and of those `by` farther on.
+    pub(super) fn new<const D: usize>(all: &'a mut [Vector<D>], particles: Range<usize>, by: usize) -> Self {
+        let (now, later) = all.split_at_mut(particles.end);
+        let later = later.get(particles.start + by - particles.end..).unwrap_or(&[]);
+        Self { now: Vector::components_mut(&mut now[particles.start..]), later: Vector::components(later) }
+    }
+}
+
+/// Kicks and drifts, as [`Moves::apply`], and asks for what others will need.
+pub(super) struct Move<'a, const OWED: bool> {
+    position: Ahead<'a>,
+    velocity: Ahead<'a>,
+    owed: f64,
+    kick: f64,
+    drift: f64,
+    /// Sums of products with zero: they stay zero unless a factor is infinite or no number. Those of groups are kept in registers.
+    doubts: [f64; 2],
+}
+
+impl<'a, const OWED: bool> Move<'a, OWED> {
+    pub(super) fn new(position: Ahead<'a>, velocity: Ahead<'a>, moves: Moves) -> Self {
+        let Moves { owed, kick, drift } = moves;
+        Self { position, velocity, owed: owed.unwrap_or(0.0), kick, drift, doubts: [0.0; 2] }
+    }
+}
+
+impl<const OWED: bool> Sink for Move<'_, OWED> {
+    /// Whether every velocity was finite before the kick that was not owed, and whether every position is.
+    type Output = [bool; 2];
+
+    fn len(&self) -> usize {
+        self.position.now.len()
+    }
+
+    #[inline(always)]
+    fn take<V: Lanes>(&mut self, g: usize, r: V, a: V, doubts: &mut [V; 2]) {
+        if g.is_multiple_of(LINE / LANES) {
+            prefetch(self.position.later, LANES * g);
+            prefetch(self.velocity.later, LANES * g);
+        }
+        let zero = V::splat(0.0);
+        let velocity = &mut self.velocity.now.as_chunks_mut::<LANES>().0[g];
+        let mut v = V::new(*velocity);
+        if OWED {
+            v = v.add(a.mul(V::splat(self.owed)));
+            doubts[0] = doubts[0].add(v.mul(zero));
+        }
+        v = v.add(a.mul(V::splat(self.kick)));
+        let r = r.add(v.mul(V::splat(self.drift)));
+        doubts[1] = doubts[1].add(r.mul(zero));
+        *velocity = v.lanes();
+        self.position.now.as_chunks_mut::<LANES>().0[g] = r.lanes();
+    }
+
+    #[inline(always)]
+    fn take_one(&mut self, n: usize, r: f64, a: f64) {
+        let v = &mut self.velocity.now[n];
+        if OWED {
+            *v += a * self.owed;
+            self.doubts[0] += *v * 0.0;
+        }
+        *v += a * self.kick;
+        self.position.now[n] = r + *v * self.drift;
+        self.doubts[1] += self.position.now[n] * 0.0;
+    }
+
+    fn finish(self, doubts: [[f64; LANES]; 2]) -> [bool; 2] {
+        [0, 1].map(|when| doubts[when].iter().sum::<f64>() + self.doubts[when] == 0.0)
+    }
+}
