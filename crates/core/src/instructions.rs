@@ -148,7 +148,9 @@ pub fn prefetch<T>(items: &[T], index: usize) {
         use std::arch::x86_64::{_MM_HINT_T1, _mm_prefetch};
         #[allow(unsafe_code, reason = "there is no other way to say it; measured in docs/performance.md")]
         // SAFETY: every x86-64 processor has this instruction, and it has no effect but on speed.
-        unsafe { _mm_prefetch::<_MM_HINT_T1>(std::ptr::from_ref(item).cast()) };
+        unsafe {
+            _mm_prefetch::<_MM_HINT_T1>(std::ptr::from_ref(item).cast())
+        };
     }
     #[cfg(not(target_arch = "x86_64"))]
     let _ = (items, index);
