@@ -149,7 +149,7 @@ pub fn prefetch<T>(items: &[T], index: usize) {
         #[allow(unsafe_code, reason = "there is no other way to say it; measured in docs/performance.md")]
         // SAFETY: every x86-64 processor has this instruction, and it has no effect but on speed.
         unsafe {
-            _mm_prefetch::<_MM_HINT_T1>(std::ptr::from_ref(item).cast())
+            _mm_prefetch::<_MM_HINT_T1>(std::ptr::from_ref(item).cast());
         };
     }
     #[cfg(not(target_arch = "x86_64"))]
