@@ -89,8 +89,7 @@ impl Language {
         if let (Self::Chinese, Some(name)) = (self, phrases::chinese(word)) {
             return name.to_owned();
         }
-        let mut letters = word.chars();
-        letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
+        named_after_people(word).map_or_else(|| capitalised(word), str::to_owned)
     }
 
     /// The name of a key such as `packing_fraction`: its words.
@@ -98,10 +97,32 @@ impl Language {
         if let (Self::Chinese, Some(name)) = (self, phrases::chinese(key)) {
             return name.to_owned();
         }
-        let words = key.replace(['_', '-'], " ");
-        let mut letters = words.chars();
-        letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
+        capitalised(&key.replace(['_', '-'], " "))
     }
+}
+
+fn capitalised(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
+}
+
+/// Choices whose names hold those of people.
+fn named_after_people(word: &str) -> Option<&'static str> {
+    Some(match word {
+        "explicit-euler" => "Explicit Euler",
+        "symplectic-euler" => "Symplectic Euler",
+        "velocity-verlet" => "Velocity Verlet",
+        "yoshida-4" => "Yoshida 4",
+        "yoshida-6" => "Yoshida 6",
+        "yoshida-8" => "Yoshida 8",
+        "runge-kutta-4" => "Runge–Kutta 4",
+        "dormand-prince-8" => "Dormand–Prince 8(5,3)",
+        "gauss-radau-15" => "Gauss–Radau 15",
+        "wisdom-holman" => "Wisdom–Holman",
+        "nose-hoover" => "Nosé–Hoover",
+        "sun-earth-moon" => "Sun, Earth and Moon",
+        _ => return None,
+    })
 }
 
 #[cfg(test)]
@@ -138,5 +159,7 @@ mod tests {
         assert_eq!(Language::English.key("packing_fraction"), "Packing fraction");
         assert_eq!(Language::Chinese.key("packing_fraction"), "填充率");
         assert_eq!(Language::Chinese.key("no_such_key"), "No such key");
+        assert_eq!(Language::English.choice("runge-kutta-4"), "Runge–Kutta 4");
+        assert_eq!(Language::English.choice("periodic"), "Periodic");
     }
 }

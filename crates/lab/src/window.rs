@@ -134,6 +134,8 @@ struct Lab {
     /// Parts of the window on their way into a file.
     pictures: (Sender<Cutting>, Receiver<Cutting>),
     place: Option<PathBuf>,
+    /// Preferences as they were last kept.
+    kept: Preferences,
     /// Colours and sizes that the window wears.
     dressed: Option<(theme::Theme, f32)>,
     mourned: bool,
@@ -147,6 +149,7 @@ impl Lab {
         drop(corpuscle_render::Backdrop::new(gl.clone())?);
         let painter = Painter::new(gl);
         Ok(Self {
+            kept: model.preferences.clone(),
             model,
             runner,
             painter,
@@ -227,6 +230,17 @@ impl Lab {
         }
     }
 
+    /// Whoever ends the window from outside loses no choice. Its size is kept with the next one, or at the end.
+    fn keep_preferences(&mut self) {
+        let now = &self.model.preferences;
+        if let Some(place) = &self.place
+            && (Preferences { size: self.kept.size, ..now.clone() }) != self.kept
+        {
+            now.keep(place);
+            self.kept = now.clone();
+        }
+    }
+
     /// Files dropped onto the window are opened.
     fn dropped(&mut self, context: &egui::Context) {
         let path = context.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_owned()));
@@ -264,6 +278,7 @@ impl App for Lab {
         self.work(&context);
         let size = context.content_rect().size() * context.zoom_factor();
         self.model.preferences.size = size.into();
+        self.keep_preferences();
         if self.model.leaving {
             context.send_viewport_cmd(ViewportCommand::Close);
         }

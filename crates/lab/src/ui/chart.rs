@@ -304,7 +304,7 @@ fn decade(mark: GridMark) -> String {
     let mantissa = 10f64.powf(mark.value - power).round();
     let (power, mantissa) = if mantissa >= 10.0 { (power + 1.0, 1.0) } else { (power, mantissa) };
     let value = mantissa * power_of_ten(power);
-    if (0.009..20_000.0).contains(&value) { significant(value, 2) } else { tick(value, value, value) }
+    if (0.009..9_999.0).contains(&value) { significant(value, 2) } else { tick(value, value, value) }
 }
 
 /// What the pointer reads: the value with its error, theory beside it, and by how many errors they differ.
