@@ -42,11 +42,11 @@ impl Force<2> for Tangent {
         acceleration: &mut [Vector<2>],
     ) {
         let Self { constant, stars, places: Places { grain, twin, deviation } } = *self;
-        let (r, m) = (&particles.position, &particles.mass);
+        let r = &particles.position;
         let lost = |i: usize| remainder.get(i).copied().unwrap_or(Vector::ZERO);
         let arrow = |from: usize, to: usize| (r[to] - r[from]) + (lost(to) - lost(from));
-        for k in 0..stars {
-            let strength = constant * m[k];
+        for (k, &mass) in particles.mass.iter().enumerate().take(stars) {
+            let strength = constant * mass;
             for i in (0..stars).filter(|&i| i != k).chain([grain, twin]) {
                 let d = arrow(i, k);
                 let d2 = d.norm_squared();

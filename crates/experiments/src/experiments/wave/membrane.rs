@@ -114,6 +114,7 @@ impl Membrane {
         let engine = Self::build(subject, stiffness, mass, omega_0, dt, sources)?;
         let period = steps as u64;
         let travel = |masses: f64| (masses / (omega_0 * dt)) as u64;
+        #[allow(clippy::single_match_else, reason = "one arm for each kind of measurement")]
         let (settled, last) = match subject {
             Subject::Moving(share) => {
                 let way = (COLUMNS - 2 * SPONGE - 40) as f64 / share.max(0.3);

@@ -129,7 +129,7 @@ resume!(Nonlinear { values: [schedule, time, energy_error], parts: [purpose, row
 impl Nonlinear {
     pub(super) fn new(settings: &Settings) -> Result<Self, Invalid> {
         let material = Material {
-            masses: settings.whole("masses") as usize,
+            masses: settings.whole("masses"),
             stiffness: settings.real("stiffness"),
             mass: settings.real("mass"),
             spacing: settings.real("spacing"),

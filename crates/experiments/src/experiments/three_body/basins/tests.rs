@@ -15,7 +15,9 @@ fn kepler(places: &[[f64; 2]], velocity: [f64; 2], rules: Rules, end: f64) -> Ve
     let mut flocks: Vec<Flock> =
         places.chunks(LANES).map(|eight| Flock::released(eight, velocity, &rules, &at, &strength)).collect();
     while let Some(sky) = stars.next(end).unwrap() {
-        flocks.iter_mut().for_each(|flock| Instructions::detect().run(Ride { flock, sky: &sky, rules: &rules }));
+        for flock in &mut flocks {
+            Instructions::detect().run(Ride { flock, sky: &sky, rules: &rules });
+        }
     }
     (0..places.len()).map(|k| (flocks[k / LANES].fate[k % LANES], flocks[k / LANES].time[k % LANES])).collect()
 }
@@ -41,9 +43,15 @@ fn a_single_star_gives_keplers_fates() {
         let expected = if r < rules.capture {
             Fate::Hit(0)
         } else if pericentre < rules.capture && (inbound || energy < 0.0) {
-            if energy < 0.0 && period > 100.0 { continue } else { Fate::Hit(0) }
+            if energy < 0.0 && period > 100.0 {
+                continue;
+            }
+            Fate::Hit(0)
         } else if energy > 0.0 {
-            if energy < 0.005 { continue } else { Fate::Escaped }
+            if energy < 0.005 {
+                continue;
+            }
+            Fate::Escaped
         } else {
             Fate::Open
         };
@@ -85,7 +93,9 @@ fn every_instruction_set_gives_the_same_fates() {
         let mut flocks: Vec<Flock> =
             places.chunks(LANES).map(|eight| Flock::released(eight, [0.0; 2], &rules, &at, &[1.0, 0.8, 0.6])).collect();
         while let Some(sky) = stars.next(8.0).unwrap() {
-            flocks.iter_mut().for_each(|flock| instructions.run(Ride { flock, sky: &sky, rules: &rules }));
+            for flock in &mut flocks {
+                instructions.run(Ride { flock, sky: &sky, rules: &rules });
+            }
         }
         format!("{flocks:?}")
     };

@@ -31,7 +31,7 @@ resume!(Recurrence { values: [series], set_up: [material, alpha, amplitude, mode
 
 impl Recurrence {
     pub(super) fn new(settings: &Settings, material: Material) -> Result<Self, Invalid> {
-        let (amplitude, mode) = (settings.real("amplitude"), settings.whole("mode") as usize);
+        let (amplitude, mode) = (settings.real("amplitude"), settings.whole("mode"));
         if mode > material.masses {
             return Err(settings.invalid("mode", format!("a whole number from 1 to {}", material.masses)));
         }
