@@ -142,13 +142,15 @@ pub(crate) struct Running<const D: usize, S: Study<D>> {
 }
 
 impl<const D: usize, S: Study<D>> Running<D, S> {
-    /// Specimens that are sampled `samples` times in the duration.
+    /// Specimens that are sampled `samples` times in the duration. The end lies a hair behind the last sample, which rounding does
+    /// not put off then.
     pub(crate) fn new(study: S, duration: f64, samples: usize, mut specimens: Vec<S::Specimen>) -> Self {
         if let Some(first) = specimens.first_mut() {
             let vessel = first.vessel_mut();
             vessel.tally = Tally::of(vessel.engine.particle_count());
         }
-        Self { study, duration, specimens: Replicas::new(duration / samples as f64, specimens), in_hand: None }
+        let specimens = Replicas::new(duration / samples as f64, specimens);
+        Self { study, duration: duration * (1.0 + 8.0 * f64::EPSILON), specimens, in_hand: None }
     }
 
     fn on_show(&self) -> &Vessel<D> {

@@ -57,7 +57,11 @@ fn every_process_of_a_gas() {
     for process in ["adiabat", "piston", "warm-walls", "mixture"] {
         experiment("ideal-gas", &[("process", process), ("particles", "30"), ("replicas", "3"), ("duration", "5")], 0.5);
     }
-    experiment("brownian", &[("sweep", "mass"), ("masses", "10,20"), ("particles", "60"), ("replicas", "2"), ("duration", "12")], 0.5);
+    experiment(
+        "brownian",
+        &[("sweep", "mass"), ("masses", "10,20"), ("particles", "60"), ("replicas", "2"), ("duration", "12")],
+        0.5,
+    );
 }
 
 #[test]

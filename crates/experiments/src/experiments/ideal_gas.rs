@@ -96,7 +96,7 @@ pub(crate) static EXPERIMENT: Experiment = Experiment {
             name: "piston_mass",
             unit: "N m",
             help: "Piston: its mass, in masses of all the gas.",
-            kind: Kind::Real { default: 20.0, least: 1.0, most: 1e4 },
+            kind: Kind::Real { default: 2.0, least: 1.0, most: 1e4 },
         },
         Parameter {
             name: "heavy_mass",

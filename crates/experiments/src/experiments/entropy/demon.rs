@@ -7,7 +7,7 @@
 //! doi:10.1147/rd.53.0183; Bennett 1982, doi:10.1007/BF02084158). To wipe it costs at least `k h` a decision, with Shannon's
 //! `h(p) = -p ln p - (1 - p) ln(1 - p)` of the answers, at most `k ln 2`; and the gas never loses more.
 //!
-//! Where all are on the right at last, the shut door is a piece of wall: knocks come at the rate of the flux through the hole.
+//! Where all are on the right at last, the shut door is a piece of wall: knocks come at the rate `P/sqrt(2 pi m kT)` an area.
 
 use std::f64::consts::LN_2;
 use std::ops::ControlFlow;
@@ -15,7 +15,7 @@ use std::ops::ControlFlow;
 use corpuscle_checkpoint::resume;
 use corpuscle_core::{Engine, Failure, Invalid, Observer, Random};
 use corpuscle_observe::chart::{Axis, Scale, Series, Style};
-use corpuscle_observe::{Chart, Check, Estimate, Gate, entropy};
+use corpuscle_observe::{Chart, Check, Estimate, Gate, entropy, theory};
 use corpuscle_scene::{Colour, Colouring, Scene};
 
 use super::Set;
@@ -325,10 +325,13 @@ impl<const D: usize> Study<D> for Demon<D> {
                     [(to.knocks[1] - from.knocks[1]) as f64, to.presence[1] - from.presence[1]]
                 })
                 .collect();
+            // As at any wall the density is P/kT; each particle has N - 1 partners.
+            let count = self.set.particles as f64;
+            let pressure = 1.0 + (theory::compressibility::<D>(2.0 * self.set.packing_fraction) - 1.0) * (count - 1.0) / count;
             checks.push(Estimate::jackknife(&pairs, |[knocks, presence]| knocks * self.door.time / presence).check(
                 "knocks at the shut door, of each particle behind it in the time τ",
-                1.0,
-                "the flux through the hole, n v/pi or n v/4, of a gas that has the right half alone",
+                pressure,
+                "P/kT sqrt(kT/(2 pi m)) on the hole, of a gas that has the right half alone",
             ));
         }
         checks

@@ -5,8 +5,10 @@
 //!
 //! Displaced a little it swings. The gas is a column of length `l` in which sound runs at `c = sqrt(gamma kT/m)`: with the
 //! displacement `sin(k x)` of the gas the force on the piston is `-rho c^2 A k cot(k l)`, so that `k l tan(k l) = N m/M` and
-//! `omega = c k`; for a heavy piston `omega^2 = gamma F/(M l)`. That holds while the gas has time to become isotropic,
-//! `omega` far below the collision rate, and for small amplitudes.
+//! `omega = c k`; for a heavy piston `omega^2 = gamma F/(M l)`. Two corrections are kept to first order. The gas becomes isotropic
+//! in the time `tau = eta/P` only (viscosity `eta`, first Sonine approximation), so that `gamma` rises towards the 3 of motion along one
+//! axis: `gamma + (3 - gamma) w^2/(1 + w^2)` with `w = omega tau`. And a swing of the relative amplitude `a` in the potential of an
+//! adiabatic spring is slower by `a^2 (5 (gamma + 1)^2/48 - (gamma + 1)(gamma + 2)/16)` (Landau and Lifshitz, Mechanics, section 28).
 
 use std::ops::ControlFlow;
 
@@ -22,9 +24,9 @@ use crate::replicas::{Member, Replicas};
 use crate::study::{Running, Specimen, Study, Vessel};
 use crate::{Settings, ensemble};
 
-/// Samples in the whole duration, and in a period.
-const SAMPLES: usize = 240;
-const PERIODS: f64 = 10.0;
+/// Samples in the whole duration, and periods; in the last third of it the swing of a light piston has died away.
+const SAMPLES: usize = 720;
+const PERIODS: f64 = 30.0;
 /// The gas starts compressed to this part of its length in equilibrium.
 const START: f64 = 0.88;
 /// Crossings of the box before the piston is let go.
@@ -71,8 +73,13 @@ impl Swing {
         swing.equilibrium = swing.moments_of_length::<D>(energy);
         let rest = swing.equilibrium.0;
         let temperature = (energy - force * rest) / (0.5 * d * n);
-        let sound = ((1.0 + 2.0 / d) * temperature / state.mass).sqrt();
-        swing.frequency = sound / rest * column(n * state.mass / mass);
+        let gamma = 1.0 + 2.0 / d;
+        let frequency = |gamma: f64| (gamma * temperature / state.mass).sqrt() / rest * column(n * state.mass / mass);
+        let slow = frequency(gamma) * relaxation::<D>(&state, temperature, rest);
+        let amplitude = length / rest - 1.0;
+        let bent = 5.0 * (gamma + 1.0) * (gamma + 1.0) / 48.0 - (gamma + 1.0) * (gamma + 2.0) / 16.0;
+        swing.frequency =
+            frequency(gamma + (3.0 - gamma) * slow * slow / (1.0 + slow * slow)) * (1.0 - bent * amplitude * amplitude);
         swing
     }
 
@@ -99,6 +106,15 @@ impl Swing {
         let mean = first / sum;
         (mean, second / sum - mean * mean)
     }
+}
+
+/// Time `eta/P` in which stresses relax, of a gas that fills this length: `eta = 1.022 sqrt(m kT/pi)/(2 s)` of discs,
+/// `1.016 (5/16) sqrt(m kT/pi)/s^2` of spheres (Chapman and Cowling; Gass 1971, doi:10.1063/1.1675116).
+fn relaxation<const D: usize>(state: &State, temperature: f64, length: f64) -> f64 {
+    let (s, momentum) = (2.0 * state.radius, (state.mass * temperature / std::f64::consts::PI).sqrt());
+    let viscosity = if D == 2 { 1.022 * momentum / (2.0 * s) } else { 1.016 * 5.0 / 16.0 * momentum / (s * s) };
+    let volume = length * state.open_side().powi(D as i32 - 1);
+    viscosity * volume / (state.count as f64 * temperature)
 }
 
 /// `k l` of the slowest oscillation, `k l tan(k l) = r`, by bisection: the left side grows from 0 to infinity below a right angle.
@@ -178,11 +194,11 @@ impl<const D: usize> Specimen<D> for Loaded<D> {
 
 type Gases<const D: usize> = Replicas<Loaded<D>>;
 
-/// Samples of one and a half periods: the first two passages of the mean through equilibrium lie in them.
+/// Samples of one and a half periods: the first three passages of the mean through equilibrium lie in them.
 const PASSAGES: usize = (1.5 * SAMPLES as f64 / PERIODS) as usize;
 
 impl Swing {
-    /// Angular frequency from the time between the first two passages of the mean length through equilibrium, half a period.
+    /// Angular frequency from the first passage of the mean length through equilibrium and the third, a period later: outwards both.
     fn measured_frequency<const D: usize>(&self, gases: &Gases<D>) -> Estimate {
         let courses: Vec<[f64; PASSAGES]> =
             gases.members.iter().map(|gas| std::array::from_fn(|k| gas.course[k].0 - self.equilibrium.0)).collect();
@@ -192,8 +208,8 @@ impl Swing {
                 let part = mean[k - 1] / (mean[k - 1] - mean[k]);
                 (k as f64 - 1.0 + part) * interval
             });
-            match (passages.next(), passages.next()) {
-                (Some(first), Some(second)) => std::f64::consts::PI / (second - first),
+            match (passages.next(), passages.nth(1)) {
+                (Some(first), Some(third)) => std::f64::consts::TAU / (third - first),
                 _ => f64::NAN,
             }
         })
@@ -224,7 +240,7 @@ impl<const D: usize> Study<D> for Swing {
         let amplitude = self.length / rest - 1.0;
         vec![
             Chart::new("piston", "A piston on a gas", Axis::linear("time t", ""), Axis::linear("length of the gas over that in equilibrium", ""))
-                .with(Series::theory("adiabatic spring, undamped", 0.0, 2.0 * period, 200, Scale::Linear, |t| {
+                .with(Series::theory("adiabatic spring, undamped", 0.0, 3.0 * period, 200, Scale::Linear, |t| {
                     1.0 + amplitude * libm::cos(self.frequency * t)
                 }))
                 .with(Series::with_errors("mean of the replicas", Style::Line, measured))
@@ -237,9 +253,8 @@ impl<const D: usize> Study<D> for Swing {
         if gases.times.len() <= SAMPLES {
             return vec![];
         }
-        // The last half: the swing has died away.
         let late = |gas: &Loaded<D>, value: &dyn Fn((f64, f64)) -> f64| {
-            let course = &gas.course[SAMPLES / 2..];
+            let course = &gas.course[2 * SAMPLES / 3..];
             course.iter().map(|&point| value(point)).sum::<f64>() / course.len() as f64
         };
         let (rest, variance) = self.equilibrium;
