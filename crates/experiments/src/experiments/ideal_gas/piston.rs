@@ -258,12 +258,17 @@ impl<const D: usize> Study<D> for Swing {
             course.iter().map(|&point| value(point)).sum::<f64>() / course.len() as f64
         };
         let (rest, variance) = self.equilibrium;
-        vec![
-            self.measured_frequency(gases).check(
+        let mut checks = vec![];
+        // In few small gases thermal motion may hide the swing.
+        let frequency = self.measured_frequency(gases);
+        if frequency.standard_error.is_finite() {
+            checks.push(frequency.check(
                 "angular frequency of the piston",
                 self.frequency,
                 "k l tan(k l) = N m/M, omega = k c: the gas as a column in which sound runs",
-            ),
+            ));
+        }
+        checks.extend([
             gases.mean(|gas| late(gas, &|(length, _)| length)).check(
                 "mean length of the gas under the force",
                 rest,
@@ -274,7 +279,8 @@ impl<const D: usize> Study<D> for Swing {
                 1.0,
                 "the same distribution: an adiabatic spring at kT",
             ),
-        ]
+        ]);
+        checks
     }
 
     fn moments(&self, end: f64) -> Vec<f64> {
