@@ -125,7 +125,9 @@ impl<const D: usize> Simulation for Sweep<D> {
         };
         let of_kind = |kind: &Brownian<D>| {
             let mut checks = kind.checks();
-            checks.iter_mut().for_each(|check| names(check, &kind.set));
+            for check in &mut checks {
+                names(check, &kind.set);
+            }
             checks
         };
         self.kinds.iter().flat_map(of_kind).collect()

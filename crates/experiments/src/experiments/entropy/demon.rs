@@ -192,7 +192,7 @@ impl<const D: usize> Demon<D> {
 
     /// What the memory of a room holds at each sampling time: decisions times `ln 2`, and what they can be compressed to by somebody
     /// who knows how many of all rooms' knocks in that interval were let in.
-    fn memory(&self, rooms: &Rooms<D>) -> Vec<[f64; 2]> {
+    fn memory(rooms: &Rooms<D>) -> Vec<[f64; 2]> {
         let mut sum = [0.0; 2];
         let replicas = rooms.members.len() as f64;
         let total = |k: usize| {
@@ -215,7 +215,7 @@ impl<const D: usize> Demon<D> {
 
     fn balance_chart(&self, rooms: &Rooms<D>) -> Chart {
         let count = self.set.particles as f64;
-        let memory = self.memory(rooms);
+        let memory = Self::memory(rooms);
         let line =
             |index: usize| rooms.times.iter().zip(&memory).map(move |(&time, sum)| (time, sum[index] / count)).collect::<Vec<_>>();
         let losses = self.losses(rooms).into_iter().map(|(time, loss)| (time, loss.mean / count, loss.standard_error / count));
@@ -305,7 +305,7 @@ impl<const D: usize> Study<D> for Demon<D> {
         if rooms.times.len() <= SAMPLES {
             return vec![];
         }
-        let (memory, losses) = (self.memory(rooms), self.losses(rooms));
+        let (memory, losses) = (Self::memory(rooms), self.losses(rooms));
         let (held, loss) = (memory[SAMPLES][1], losses[SAMPLES].1);
         let mut checks = vec![
             Check::at_most(

@@ -169,14 +169,14 @@ type Paths<const D: usize> = Replicas<Path<D>>;
 
 impl<const D: usize> Echo<D> {
     /// Turning times so far.
-    fn turns<'a>(&self, paths: &'a Paths<D>) -> &'a [f64] {
+    fn turns(paths: &Paths<D>) -> &[f64] {
         &paths.times[1..]
     }
 
     /// Mean over the paths of a logarithm, at each turning time where all of them have one.
     fn mean<'a>(&self, paths: &'a Paths<D>, value: impl Fn(&Path<D>, usize) -> f64 + 'a) -> Vec<(f64, Estimate)> {
         let at = |turn: usize| Estimate::from_replicas(&paths.values(|path| value(path, turn)));
-        let all = self.turns(paths).iter().enumerate().map(|(turn, &time)| (time, at(turn)));
+        let all = Self::turns(paths).iter().enumerate().map(|(turn, &time)| (time, at(turn)));
         all.filter(|(_, estimate)| estimate.mean.is_finite()).collect()
     }
 
@@ -186,14 +186,14 @@ impl<const D: usize> Echo<D> {
         let from = ALIGNED / (0.5 * self.set.collision_rate);
         let most = libm::log(SMALL * self.set.radius / eps);
         let largest = |turn: usize| paths.values(|path| path.growth[turn]).into_iter().fold(f64::NEG_INFINITY, f64::max);
-        let turns = self.turns(paths);
+        let turns = Self::turns(paths);
         (0..turns.len()).filter(|&turn| turns[turn] >= from && largest(turn) < most).collect()
     }
 
     /// Growth per time in the window: of the return errors, and in tangent space along the same paths.
     fn exponents(&self, paths: &Paths<D>) -> Option<[Vec<f64>; 2]> {
         let (index, eps) = self.smallest()?;
-        let (turns, window) = (self.turns(paths), self.window(paths, eps));
+        let (turns, window) = (Self::turns(paths), self.window(paths, eps));
         let slope = |value: &dyn Fn(usize) -> f64| {
             let points: Vec<_> = window.iter().map(|&turn| (turns[turn], value(turn))).collect();
             fit::line_by_scatter(&points).map(|line| line.slope.mean)
@@ -211,7 +211,7 @@ impl<const D: usize> Echo<D> {
 
     /// Turning time beyond which each path misses its start by more than a radius; none while one of them still returns.
     fn horizons(&self, paths: &Paths<D>, index: usize) -> Option<Vec<f64>> {
-        let (turns, limit) = (self.turns(paths), libm::log(self.set.radius));
+        let (turns, limit) = (Self::turns(paths), libm::log(self.set.radius));
         let of_path = |path: &Path<D>| {
             let errors: Vec<f64> = path.returns.iter().map(|returns| returns[index].error).collect();
             let after = errors.iter().position(|&error| error > limit)?;
@@ -279,7 +279,7 @@ impl<const D: usize> Study<D> for Echo<D> {
 
     fn draw(&self, paths: &Paths<D>, scene: &mut Scene) {
         scene.title = super::EXPERIMENT.title.into();
-        let name = "digits of the way back, −log₁₀(distance from the start / R)".to_string();
+        let name = "digits of the way back".to_string();
         scene.colouring = Colouring::Value { name, unit: String::new(), least: 0.0, most: 16.0 };
         let path = &paths.members[0];
         scene.caption = match path.returns.last() {
@@ -302,7 +302,7 @@ impl<const D: usize> Study<D> for Echo<D> {
     }
 
     fn checks(&self, paths: &Paths<D>) -> Vec<Check> {
-        let Some([echo, tangent]) = self.exponents(paths).filter(|_| self.turns(paths).len() >= TURNS) else { return vec![] };
+        let Some([echo, tangent]) = self.exponents(paths).filter(|_| Self::turns(paths).len() >= TURNS) else { return vec![] };
         let difference: Vec<f64> = echo.iter().zip(&tangent).map(|(a, b)| a - b).collect();
         let (echo, tangent) = (Estimate::from_replicas(&echo), Estimate::from_replicas(&tangent));
         let mut exponent = Estimate::from_replicas(&difference).check(

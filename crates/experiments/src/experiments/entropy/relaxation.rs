@@ -151,7 +151,7 @@ impl<const D: usize> Specimen<D> for Gas<D> {
 type Gases<const D: usize> = Replicas<Gas<D>>;
 
 impl<const D: usize> Relaxation<D> {
-    fn gases<'a>(gases: &'a Gases<D>, start: Start) -> impl Iterator<Item = &'a Gas<D>> {
+    fn gases(gases: &Gases<D>, start: Start) -> impl Iterator<Item = &Gas<D>> {
         gases.members.iter().filter(move |gas| gas.start == start)
     }
 
