@@ -174,7 +174,7 @@ impl<const D: usize> Echo<D> {
     }
 
     /// Mean over the paths of a logarithm, at each turning time where all of them have one.
-    fn mean<'a>(&self, paths: &'a Paths<D>, value: impl Fn(&Path<D>, usize) -> f64 + 'a) -> Vec<(f64, Estimate)> {
+    fn mean(paths: &Paths<D>, value: impl Fn(&Path<D>, usize) -> f64) -> Vec<(f64, Estimate)> {
         let at = |turn: usize| Estimate::from_replicas(&paths.values(|path| value(path, turn)));
         let all = Self::turns(paths).iter().enumerate().map(|(turn, &time)| (time, at(turn)));
         all.filter(|(_, estimate)| estimate.mean.is_finite()).collect()
@@ -223,7 +223,7 @@ impl<const D: usize> Echo<D> {
     }
 
     fn error_chart(&self, paths: &Paths<D>) -> Chart {
-        let growth = self.mean(paths, |path, turn| path.growth[turn]);
+        let growth = Self::mean(paths, |path, turn| path.growth[turn]);
         let limit = libm::log(self.set.boundary.upper[0]);
         let mut chart = Chart::new(
             "echo",
@@ -240,7 +240,7 @@ impl<const D: usize> Echo<D> {
                 chart = chart.with(theory);
             }
             let name = if eps > 0.0 { format!("ε = {eps:e}: measured") } else { "reversed as it is".into() };
-            let points = self.mean(paths, |path, turn| path.returns[turn][index].error);
+            let points = Self::mean(paths, |path, turn| path.returns[turn][index].error);
             let points = points.iter().map(|(t, e)| (*t, libm::exp(e.mean), libm::exp(e.mean) * e.standard_error));
             chart = chart.with(Series::with_errors(name, Style::Points, points));
         }
@@ -260,11 +260,11 @@ impl<const D: usize> Echo<D> {
         .with(Series::new(
             "on the way out",
             Style::Theory,
-            self.mean(paths, |path, turn| path.room.rise(&path.room.samples[turn + 1]) / count).iter().map(|(t, s)| (*t, s.mean)),
+            Self::mean(paths, |path, turn| path.room.rise(&path.room.samples[turn + 1]) / count).iter().map(|(t, s)| (*t, s.mean)),
         ));
         for (index, &eps) in self.perturbations.iter().enumerate() {
             let name = if eps > 0.0 { format!("ε = {eps:e}") } else { "reversed as it is".into() };
-            let points = self.mean(paths, |path, turn| path.returns[turn][index].entropy / count);
+            let points = Self::mean(paths, |path, turn| path.returns[turn][index].entropy / count);
             let points = points.iter().map(|(t, s)| (*t, s.mean, s.standard_error));
             chart = chart.with(Series::with_errors(name, Style::Line, points));
         }
