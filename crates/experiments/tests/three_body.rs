@@ -136,3 +136,78 @@ fn neither_stops_nor_threads_leave_a_trace() {
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap().install(|| run(3, &values));
     assert_eq!((whole.checks(), whole.charts()), (one.checks(), one.charts()));
 }
+
+#[test]
+fn the_new_starts_return_or_fall_apart_as_they_should() {
+    for preset in ["butterfly", "butterfly-2", "moth", "dragonfly", "yin-yang", "goggles", "yarn"] {
+        let simulation = run(1, &[("preset", preset)]);
+        assert_all_passed(simulation.as_ref(), 4);
+    }
+    let euler = run(1, &[("preset", "euler"), ("duration", "6")]);
+    assert_all_passed(euler.as_ref(), 5);
+    assert_all_passed(run(2, &[("preset", "euler"), ("masses", "3,0.5,0.1"), ("duration", "6")]).as_ref(), 5);
+    assert_all_passed(run(1, &[("preset", "sun-earth-moon")]).as_ref(), 4);
+}
+
+/// Random starts of the restricted problem and of the triangle's and the line's displacements: their scores are normal deviates.
+#[test]
+fn scores_of_the_restricted_problem_and_of_eulers_line_are_normal() {
+    let mut scores = corpuscle_observe::scores::Scores::new();
+    for seed in 1..=10 {
+        let restricted = run(seed, &[("preset", "restricted"), ("duration", "60")]);
+        let line = run(seed, &[("preset", "euler"), ("duration", "0.1"), ("masses", "1,2,0.5")]);
+        for check in restricted.checks().into_iter().chain(line.checks()) {
+            assert!(check.passed, "seed {seed}: {check:?}");
+            check.z.into_iter().for_each(|z| scores.push(z));
+        }
+    }
+    println!("{scores:?}: mean {:.3}, mean square {:.3}", scores.mean(), scores.mean_square());
+    assert_eq!(scores.count(), 20);
+    assert!(scores.score_of_mean().abs() < 4.0 && scores.score_of_spread().abs() < 4.0, "{scores:?}");
+}
+
+/// The map of fates: its shares are those of another integrator's random grains, for every seed; its border is a fractal.
+#[test]
+fn shares_of_fates_agree_over_seeds() {
+    let values = [("show", "basins"), ("resolution", "96"), ("duration", "30")];
+    common::agrees_over_more_seeds("three-body", &values, 14);
+    let charts = run(1, &values).charts();
+    let uncertainty = charts.iter().find(|chart| chart.name == "uncertainty").unwrap();
+    let measured = uncertainty.series.last().unwrap();
+    let (nearest, farthest) = (measured.y[0], *measured.y.last().unwrap());
+    // Of a smooth border a distance eight times smaller would leave an eighth.
+    let doublings = measured.y.len() - 1;
+    assert!(doublings == 3 && nearest > 1.5 * farthest / 8.0, "{measured:?}");
+}
+
+#[test]
+fn a_map_has_the_same_bits_whatever_the_threads_and_stops() {
+    let values = [("show", "basins"), ("resolution", "61"), ("duration", "8"), ("preset", "pythagorean"), ("map_extent", "3")];
+    let drawn = |simulation: &dyn Simulation| {
+        let mut scene = corpuscle_scene::Scene::default();
+        simulation.draw(&mut scene);
+        (scene.map.unwrap(), simulation.checks())
+    };
+    let whole = run(3, &values);
+    assert_eq!(drawn(whole.as_ref()).0.cells.len(), 61 * 61);
+    let mut steps = start(3, &values).unwrap();
+    for k in 1..=97 {
+        steps.advance(8.0 * f64::from(k) / 97.0).unwrap();
+    }
+    assert_eq!(drawn(whole.as_ref()), drawn(steps.as_ref()));
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap().install(|| run(3, &values));
+    assert_eq!(drawn(whole.as_ref()), drawn(one.as_ref()));
+}
+
+#[test]
+fn the_new_views_refuse_what_makes_no_sense() {
+    for (values, key) in [
+        (&[("show", "basins"), ("map_centre", "1")][..], "map_centre"),
+        (&[("show", "basins"), ("resolution", "5")], "resolution"),
+        (&[("preset", "restricted"), ("jacobi_constant", "50")], "jacobi_constant"),
+        (&[("preset", "restricted"), ("show", "basins")], "show"),
+        (&[("preset", "restricted"), ("masses", "1")], "masses"),
+    ] {
+        assert_eq!(start(1, values).err().map(|invalid| invalid.key).as_deref(), Some(key), "{values:?}");
+    }
+}

@@ -169,3 +169,46 @@ fn what_makes_no_sense_is_refused_by_name() {
         assert_eq!(error.key, key, "{error}");
     }
 }
+
+#[test]
+fn nonlinear_chains_and_membranes_agree_with_theory() {
+    for (changes, count) in [
+        (&[("preset", "fermi-pasta")][..], 4),
+        (&[("preset", "dispersion")], 3),
+        (&[("preset", "dispersion"), ("masses", "41"), ("stiffness", "9"), ("spacing", "0.2")], 3),
+        (&[("preset", "solitons")], 2),
+        (&[("preset", "solitons"), ("solitons", "1.4,1,0.6"), ("masses", "700"), ("stiffness", "4"), ("spacing", "0.5")], 2),
+        (&[("preset", "two-sources")], 1),
+        (&[("preset", "double-slit")], 1),
+        (&[("preset", "single-slit")], 1),
+        (&[("preset", "doppler")], 2),
+    ] {
+        let simulation = run(&settings(1, changes), 3);
+        let checks = simulation.checks();
+        assert_all_pass(&format!("{changes:?}"), &checks);
+        assert_eq!(checks.len(), count, "{changes:?}");
+        let mut scene = Scene::default();
+        simulation.draw(&mut scene);
+        assert!(!scene.title.is_empty() && (scene.map.is_some() || !scene.bodies.is_empty()));
+        for chart in simulation.charts() {
+            println!("{}: {}", chart.name, chart.note);
+            let finite = |x: &f64| x.is_finite();
+            assert!(chart.series.iter().all(|series| series.x.iter().all(finite) && series.y.iter().all(finite)), "{}", chart.name);
+        }
+    }
+}
+
+#[test]
+fn nonlinear_chains_and_membranes_refuse_nonsense_by_name() {
+    for (changes, key) in [
+        (&[("preset", "solitons"), ("solitons", "1,1")][..], "solitons"),
+        (&[("preset", "solitons"), ("masses", "60")], "masses"),
+        (&[("preset", "fermi-pasta"), ("amplitude", "50")], "amplitude"),
+        (&[("preset", "fermi-pasta"), ("mode", "40")], "mode"),
+        (&[("preset", "fermi-pasta"), ("time_step", "3")], "time_step"),
+        (&[("preset", "double-slit"), ("slit_width", "41")], "slit_width"),
+    ] {
+        let error = (find("wave").unwrap().start)(&settings(1, changes)).err().expect("refused");
+        assert_eq!(error.key, key, "{error}");
+    }
+}

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use corpuscle_scene::Scene;
 
 use crate::gl::{Gl, Viewport, begin_frame, end_frame, largest_side};
-use crate::layers::{Bodies, Lines, Regions, Space, Trails};
+use crate::layers::{Bodies, Lines, Maps, Regions, Space, Trails};
 use crate::overlay::{Layout, Sheet};
 use crate::projection::Projection;
 use crate::{RenderError, View};
@@ -18,6 +18,7 @@ pub struct Renderer {
     gl: Gl,
     bodies: Bodies,
     lines: Lines,
+    maps: Maps,
     regions: Regions,
     trails: Trails,
     sheet: Sheet,
@@ -33,6 +34,7 @@ impl Renderer {
         Ok(Self {
             bodies: Bodies::new(&gl)?,
             lines: Lines::new(&gl)?,
+            maps: Maps::new(&gl)?,
             regions: Regions::new(&gl)?,
             trails: Trails::new(&gl)?,
             sheet: Sheet::new(&gl)?,
@@ -65,6 +67,7 @@ impl Renderer {
             // What is transparent comes after what can hide it.
             self.bodies.draw(&self.gl, &space, scene);
         }
+        self.maps.draw(&self.gl, &space, scene)?;
         self.regions.draw(&self.gl, &space, scene);
         self.lines.draw(&self.gl, &space, scene);
         self.trails.draw(&self.gl, &space, scene)?;

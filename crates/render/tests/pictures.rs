@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot draw has failed")]
 
 use corpuscle_render::{Headless, Picture, ShadingLanguage, View};
-use corpuscle_scene::{Body, Camera, Colour, Colouring, Line, Palette, Region, Scene, TrailPoint};
+use corpuscle_scene::{Body, Camera, Cell, Colour, Colouring, Line, Map, Palette, Region, Scene, TrailPoint};
 
 const SIDE: u32 = 256;
 
@@ -49,6 +49,28 @@ fn a_line_covers_what_geometry_says() {
     let column: f64 = (0..SIDE).map(|y| covered(128, y)).sum();
     // Each of the two edges is rounded to 1/255, once for its opacity and once for its colour.
     assert!((column - 10.5).abs() < 4.0 / 200.0, "{column}");
+}
+
+/// Cells lie where geometry says, the first one at the lower left, and in the palette's colours.
+#[test]
+fn a_map_shows_its_cells() {
+    let cell = |species: u8| Cell { species, strength: 255 };
+    let map = Map { lower: [-60.0, -40.0], upper: [60.0, 40.0], columns: 3, cells: [1, 2, 3, 4, 5, 6].map(cell).into() };
+    let scene = Scene { map: Some(map), ..white(Vec::new()) };
+    for palette in [Palette::Dark, Palette::Light] {
+        let picture = draw(&scene, &bare(palette));
+        for (number, at) in [[-40, -20], [0, -20], [40, -20], [-40, 20], [0, 20], [40, 20]].into_iter().enumerate() {
+            for shift in [-19, 0, 19] {
+                let pixel = picture.pixel((128 + at[0] + shift) as u32, (127 - at[1] - shift) as u32).unwrap();
+                let expected = palette.rgba(Colour::Accent(number as u8 + 1)).map(|c| (255.0 * c).round() as u8);
+                assert_eq!(pixel[..3], expected[..3], "cell {number} off by {shift}");
+            }
+        }
+        let ground = palette.ground().map(|c| (255.0 * c).round() as u8);
+        for at in [(66, 128), (190, 128), (128, 86), (128, 170)] {
+            assert_eq!(picture.pixel(at.0, at.1).unwrap()[..3], ground, "outside, at {at:?}");
+        }
+    }
 }
 
 #[test]

@@ -50,6 +50,28 @@ pub struct Region {
     pub colour: Colour,
 }
 
+/// A rectangle in the plane `z = 0` divided into equal cells, drawn behind everything: what happens to each start, say.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Map {
+    /// Lower corner.
+    pub lower: [f64; 2],
+    /// Upper corner.
+    pub upper: [f64; 2],
+    /// Number of cells in a row; their number is a multiple of it.
+    pub columns: usize,
+    /// The cells, row by row from the lowest.
+    pub cells: Vec<Cell>,
+}
+
+/// A cell of a [`Map`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Cell {
+    /// Index of a species, coloured as [`Colouring::Species`] does.
+    pub species: u8,
+    /// How much of that colour is mixed into the ground, from 0 (none) to 255 (nothing else).
+    pub strength: u8,
+}
+
 /// A short text fixed to a place in the simulation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Label {
@@ -80,7 +102,9 @@ pub struct Scene {
     pub field: [f64; 3],
     /// Straight lines.
     pub lines: Vec<Line>,
-    /// Filled rectangles behind everything.
+    /// A map behind everything else.
+    pub map: Option<Map>,
+    /// Filled rectangles behind everything but the map.
     pub regions: Vec<Region>,
     /// Paths of chosen bodies.
     pub trails: Vec<Trail>,
@@ -107,6 +131,7 @@ impl Scene {
         self.bodies.clear();
         self.lines.clear();
         self.regions.clear();
+        self.map = None;
         self.labels.clear();
         (self.shaded, self.period, self.bounds) = (Shade::Own, [0.0; 3], None);
     }

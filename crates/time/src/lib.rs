@@ -42,8 +42,8 @@ pub use constraint::{Drive, Pin, Signal};
 pub use engine::TimeDriven;
 pub use force::{
     BornMayer, CentralField, Coulomb, Drag, DrivingForce, Ewald, Force, ForceShifted, Gravity, HarmonicRepulsion, InversePower,
-    LennardJones, Morse, PairForce, PairPotential, Spring, Springs, Tensor, TreeGravity, UniformField, WeeksChandlerAndersen,
-    Yukawa,
+    LennardJones, Morse, PairForce, PairPotential, Spring, Springs, Tensor, TodaBonds, TreeGravity, UniformField,
+    WeeksChandlerAndersen, Yukawa,
 };
 pub use integrator::Integrator;
 pub use neighbours::Neighbours;

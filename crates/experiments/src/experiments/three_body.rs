@@ -1,27 +1,37 @@
 //! Three stars, and dust among them: orbits that return, orbits that never do, and what a tenth of a unit changes.
 
+mod basins;
 mod conservation;
 mod dust;
 mod fate;
+mod line;
+mod orbits;
 mod orders;
+mod parameters;
 mod picture;
+mod quintic;
 mod report;
+mod restricted;
 mod start;
+mod tangent;
 mod triangle;
 
 use corpuscle_checkpoint::{Fault, Resume, resume};
 use std::collections::VecDeque;
 
-use corpuscle_core::{Engine, Failure, Invalid};
+use corpuscle_core::{Engine, Failure, Invalid, Vector};
 use corpuscle_observe::{Chart, Check};
 use corpuscle_scene::Scene;
 use corpuscle_time::Integrator;
 
-use crate::{Action, Experiment, Honesty, Kind, Parameter, Settings, Simulation, Table, ensemble, hand};
+use crate::{Action, Experiment, Honesty, Settings, Simulation, Table, ensemble, hand};
+use basins::Basins;
 use conservation::{Frame, Run};
 use dust::Parting;
 use fate::Fate;
+use line::Line;
 use orders::Orders;
+use restricted::Restricted;
 use start::{PRECISE, Start};
 use triangle::Triangle;
 
@@ -33,69 +43,15 @@ pub(crate) static EXPERIMENT: Experiment = Experiment {
               differences of the start grow; energy, momentum and the order of every integrator are measured beside.",
     dimensions: &[2],
     engines: &["time-driven"],
-    parameters: PARAMETERS,
-    start: |settings| Ok(Box::new(ThreeBody::new(settings)?)),
+    parameters: parameters::PARAMETERS,
+    start: |settings| {
+        Ok(match (settings.word("preset"), settings.word("show")) {
+            ("restricted", _) => Box::new(Restricted::new(settings)?),
+            (_, "basins") => Box::new(Basins::new(settings)?),
+            _ => Box::new(ThreeBody::new(settings)?),
+        })
+    },
 };
-
-/// Of fixed steps, and the precise one they are measured against; the map for planets needs a heavy star.
-const INTEGRATORS: &[&str] = Integrator::NAMES.split_at(8).0;
-
-const PARAMETERS: &[Parameter] = &[
-    Parameter {
-        name: "preset",
-        unit: "",
-        help: "Start: three stars and dust, the figure-eight, Lagrange's turning triangle, or Burrau's Pythagorean problem.",
-        kind: Kind::Choice { default: "paper", options: &["paper", "figure-eight", "lagrange", "pythagorean"] },
-    },
-    Parameter {
-        name: "integrator",
-        unit: "",
-        help: "Rule that advances time; gauss-radau-15 chooses its own steps and is exact to rounding.",
-        kind: Kind::Choice { default: "gauss-radau-15", options: INTEGRATORS },
-    },
-    Parameter {
-        name: "time_step",
-        unit: "",
-        help: "Longest step of a fixed-step integrator; shortened so that a whole number of steps makes a sampling interval.",
-        kind: Kind::Real { default: 0.001, least: 1e-6, most: 1.0 },
-    },
-    Parameter {
-        name: "masses",
-        unit: "",
-        help: "Masses of the three stars; empty: those of the preset.",
-        kind: Kind::List { default: &[], least: 1e-9, most: 1e6, longest: 3 },
-    },
-    Parameter {
-        name: "grains",
-        unit: "",
-        help: "Number of dust grains, each with two unseen twins; unless given 24 (paper), 12 (lagrange) or none.",
-        kind: Kind::Whole { default: 24, least: 0, most: 1000 },
-    },
-    Parameter {
-        name: "grain_spacing",
-        unit: "",
-        help: "Difference between the starts of neighbouring grains, in one coordinate.",
-        kind: Kind::Real { default: 0.1, least: 1e-12, most: 10.0 },
-    },
-    Parameter {
-        name: "softening",
-        unit: "",
-        help: "Plummer's softening length of gravity; unless given 0.2 (paper) or none.",
-        kind: Kind::Real { default: 0.0, least: 0.0, most: 10.0 },
-    },
-    Parameter {
-        name: "gravity_constant",
-        unit: "",
-        help: "Constant of gravity G.",
-        kind: Kind::Real { default: 1.0, least: 1e-6, most: 1e6 },
-    },
-    Parameter {
-        name: "duration",
-        unit: "",
-        help: "Physical time to run for; 0: as long as the preset needs.",
-        kind: Kind::Real { default: 0.0, least: 0.0, most: 1e6 },
-    },
-];
 
 /// Samples of the paths kept for drawing.
 const KEPT: usize = 1500;
@@ -108,6 +64,7 @@ struct Aside {
     /// Distance of the figure-eight from its start after a period.
     closure: Option<f64>,
     triangles: Vec<Triangle>,
+    line: Option<Line>,
     burrau: Option<Run>,
 }
 
@@ -119,6 +76,9 @@ struct ThreeBody {
     parting: Parting,
     /// Newest samples, for trails.
     path: VecDeque<Frame>,
+    /// Where all is in the other integrator at the newest sample, and whether to show it.
+    other: Vec<Vector<2>>,
+    both: bool,
     energy_error: Vec<(f64, f64)>,
     other_energy_error: Vec<(f64, f64)>,
     /// Distance of the stars from their start after one period.
@@ -166,6 +126,8 @@ impl ThreeBody {
             seed: settings.seed,
             runs,
             path: VecDeque::new(),
+            other: vec![],
+            both: settings.word("show") == "integrators",
             energy_error: vec![],
             other_energy_error: vec![],
             closure: None,
@@ -198,7 +160,7 @@ impl ThreeBody {
     fn measure_aside(&self) -> Result<Aside, Failure> {
         let preset = self.start.preset.as_str();
         let (all, eight) = (preset == "paper", preset == "figure-eight");
-        let mut aside = Aside { orders: None, closure: None, triangles: vec![], burrau: None };
+        let mut aside = Aside { orders: None, closure: None, triangles: vec![], line: None, burrau: None };
         if all || eight {
             aside.orders = Some(Orders::measure(self.seed)?);
         }
@@ -216,6 +178,9 @@ impl ThreeBody {
             if own != [1.0; 3] {
                 aside.triangles.push(Triangle::measure([1.0; 3], self.seed)?);
             }
+        }
+        if preset == "euler" {
+            aside.line = Some(Line::measure(self.start.masses(), self.seed)?);
         }
         Ok(aside)
     }
@@ -249,6 +214,7 @@ impl ThreeBody {
                 self.closure = Some(farthest(&frame.position[..3], stars));
                 self.coarse_closure = coarse.map(|frame| farthest(&frame.position, stars));
             }
+            self.other = other.position;
             if self.path.len() == KEPT {
                 self.path.pop_front();
             }
@@ -260,9 +226,9 @@ impl ThreeBody {
 }
 
 resume!(ThreeBody {
-    values: [path, energy_error, other_energy_error, closure, coarse_closure, reach, samples, time],
+    values: [path, other, energy_error, other_energy_error, closure, coarse_closure, reach, samples, time],
     parts: [runs, parting],
-    set_up: [start, seed, aside, in_hand],
+    set_up: [start, seed, both, aside, in_hand],
     then: measure_again,
 });
 
@@ -315,6 +281,7 @@ impl Simulation for ThreeBody {
             if let [first, others @ ..] = &aside.triangles[..] {
                 charts.push(first.chart(others.first()));
             }
+            charts.extend(aside.line.as_ref().map(Line::chart));
         }
         charts.push(self.chart_of_energy());
         charts
@@ -323,6 +290,7 @@ impl Simulation for ThreeBody {
     fn checks(&self) -> Vec<Check> {
         let mut checks = self.checks_of_conservation();
         checks.extend(self.check_of_closure());
+        checks.extend(self.check_of_year());
         if self.is_burrau() && self.time >= self.end() {
             checks.extend(Fate::checks_of_burrau(self.runs[0].engine.particles(), self.start.constant, self.time));
         }
@@ -331,6 +299,7 @@ impl Simulation for ThreeBody {
             checks.extend(aside.orders.iter().flat_map(Orders::checks));
             checks.extend(aside.closure.map(report::check_of_closure));
             checks.extend(aside.triangles.iter().map(Triangle::check));
+            checks.extend(aside.line.as_ref().map(Line::check));
             if let Some(burrau) = &aside.burrau {
                 checks.extend(Fate::checks_of_burrau(burrau.engine.particles(), 1.0, burrau.engine.time()));
             }
@@ -394,7 +363,7 @@ impl Simulation for ThreeBody {
 }
 
 /// Greatest distance between a body in one picture and the same body in another.
-fn farthest(a: &[corpuscle_core::Vector<2>], b: &[corpuscle_core::Vector<2>]) -> f64 {
+fn farthest(a: &[Vector<2>], b: &[Vector<2>]) -> f64 {
     a.iter().zip(b).map(|(&a, &b)| (a - b).norm()).fold(0.0, f64::max)
 }
 

@@ -7,8 +7,13 @@
 
 mod chain;
 mod charts;
+mod initial;
+mod membrane;
+mod nonlinear;
+mod parameters;
 mod picture;
 mod sine;
+mod spectra;
 mod theory;
 mod trials;
 mod verdicts;
@@ -21,8 +26,11 @@ use corpuscle_observe::{Chart, Check, Schedule};
 use corpuscle_scene::Scene;
 use corpuscle_time::{Integrator, Signal};
 
-use crate::{Action, Experiment, Honesty, Kind, Parameter, Settings, Simulation, Table, ensemble};
+use crate::{Action, Experiment, Honesty, Settings, Simulation, Table, ensemble};
 use chain::{Chain, Design, End, Ends, Polarisation};
+use membrane::Membrane;
+use nonlinear::Nonlinear;
+use spectra::Spectra;
 use theory::{Dalembert, Modes};
 use trials::{Finding, Material, Trial};
 
@@ -34,128 +42,9 @@ pub(crate) static EXPERIMENT: Experiment = Experiment {
               waves, dispersion, and where the chain stops being a string.",
     dimensions: &[2],
     engines: &["time-driven"],
-    parameters: PARAMETERS,
+    parameters: parameters::PARAMETERS,
     start,
 };
-
-static PARAMETERS: &[Parameter] = &[
-    Parameter {
-        name: "preset",
-        unit: "",
-        help: "A ready-made set of the parameters below; those given beside it win.",
-        kind: Kind::Choice {
-            default: "density-step",
-            options: &["density-step", "fixed-end", "free-end", "ring", "standing-wave", "shaker", "longitudinal"],
-        },
-    },
-    Parameter {
-        name: "polarisation",
-        unit: "",
-        help: "Displacements across the chain (transverse, as on a string) or along it (longitudinal, as in sound).",
-        kind: Kind::Choice { default: "transverse", options: &["transverse", "longitudinal"] },
-    },
-    Parameter {
-        name: "ends",
-        unit: "",
-        help: "Both ends fixed, both free, or joined to a ring (periodic); with a shaker, the end opposite to it.",
-        kind: Kind::Choice { default: "fixed", options: &["fixed", "free", "periodic"] },
-    },
-    Parameter {
-        name: "start",
-        unit: "",
-        help: "A Gaussian pulse running to the right, a normal mode, or rest with a shaker (drive) at the left end.",
-        kind: Kind::Choice { default: "pulse", options: &["pulse", "mode", "drive"] },
-    },
-    Parameter {
-        name: "masses",
-        unit: "",
-        help: "Number N of masses that can move.",
-        kind: Kind::Whole { default: 100, least: 3, most: 2000 },
-    },
-    Parameter {
-        name: "density_ratio",
-        unit: "",
-        help: "Mass of each mass in the right half over that in the left; 1 for a uniform chain. The steps measured beside \
-               include this one.",
-        kind: Kind::Real { default: 4.0, least: 0.0625, most: 16.0 },
-    },
-    Parameter {
-        name: "amplitude",
-        unit: "",
-        help: "Height of the pulse, of the mode or of the shaker's motion.",
-        kind: Kind::Real { default: 1.0, least: 1e-6, most: 1e6 },
-    },
-    Parameter {
-        name: "pulse_width",
-        unit: "spacings",
-        help: "Standard deviation of the pulse, in spacings; the narrower, the more dispersion.",
-        kind: Kind::Real { default: 5.0, least: 1.0, most: 100.0 },
-    },
-    Parameter {
-        name: "mode",
-        unit: "",
-        help: "Number j of the mode to start with.",
-        kind: Kind::Whole { default: 3, least: 1, most: 2000 },
-    },
-    Parameter {
-        name: "drive_frequency",
-        unit: "1/time",
-        help: "Frequency f of the shaker; waves longer than two spacings exist only below f = sqrt(stiffness/mass)/pi.",
-        kind: Kind::Real { default: 0.025, least: 1e-6, most: 1e6 },
-    },
-    Parameter {
-        name: "stiffness",
-        unit: "",
-        help: "Stiffness kappa of each spring; a transverse string is under the tension stiffness x spacing.",
-        kind: Kind::Real { default: 1.0, least: 1e-6, most: 1e6 },
-    },
-    Parameter {
-        name: "mass",
-        unit: "",
-        help: "Mass m of each mass in the left half.",
-        kind: Kind::Real { default: 1.0, least: 1e-6, most: 1e6 },
-    },
-    Parameter {
-        name: "spacing",
-        unit: "",
-        help: "Distance a of neighbours at rest.",
-        kind: Kind::Real { default: 1.0, least: 1e-3, most: 1e3 },
-    },
-    Parameter {
-        name: "integrator",
-        unit: "",
-        help: "How the chain on show is advanced; the measurements beside it use velocity Verlet, whose error is known exactly.",
-        kind: Kind::Choice {
-            default: "velocity-verlet",
-            options: &["velocity-verlet", "symplectic-euler", "yoshida-4", "runge-kutta-4", "explicit-euler"],
-        },
-    },
-    Parameter {
-        name: "time_step",
-        unit: "time",
-        help: "Step of time; 0 for a tenth of sqrt(mass/stiffness). Velocity Verlet is stable below 2 over the highest frequency.",
-        kind: Kind::Real { default: 0.0, least: 0.0, most: 1e6 },
-    },
-    Parameter {
-        name: "duration",
-        unit: "time",
-        help: "How long to watch; 0 for one and a half crossings of a pulse, three of a driven wave, three periods of a mode.",
-        kind: Kind::Real { default: 0.0, least: 0.0, most: 1e9 },
-    },
-];
-
-/// What each preset changes of the defaults, as one would write it on the command line.
-fn preset(name: &str) -> &'static [(&'static str, &'static str)] {
-    match name {
-        "fixed-end" => &[("density_ratio", "1")],
-        "free-end" => &[("density_ratio", "1"), ("ends", "free")],
-        "ring" => &[("density_ratio", "1"), ("ends", "periodic")],
-        "standing-wave" => &[("density_ratio", "1"), ("start", "mode"), ("masses", "60")],
-        "shaker" => &[("density_ratio", "1"), ("start", "drive")],
-        "longitudinal" => &[("polarisation", "longitudinal")],
-        _ => &[],
-    }
-}
 
 /// Samples of the energies in the whole run.
 const SAMPLES: usize = 480;
@@ -213,12 +102,17 @@ struct Wave {
 fn start(settings: &Settings) -> Result<Box<dyn Simulation>, Invalid> {
     let mut settings = settings.clone();
     let name = settings.word("preset").to_owned();
-    for (key, text) in preset(&name) {
+    for (key, text) in parameters::preset(&name) {
         if !settings.is_given(key) {
             settings.set_text(key, text)?;
         }
     }
-    Ok(Box::new(Wave::new(&settings)?))
+    Ok(match name.as_str() {
+        "fermi-pasta" | "solitons" => Box::new(Nonlinear::new(&settings)?),
+        "dispersion" => Box::new(Spectra::new(&settings)?),
+        "two-sources" | "double-slit" | "single-slit" | "doppler" => Box::new(Membrane::new(&settings)?),
+        _ => Box::new(Wave::new(&settings)?),
+    })
 }
 
 impl Wave {
@@ -299,54 +193,6 @@ impl Wave {
         };
         wave.sample_until(0.0)?;
         Ok(wave)
-    }
-
-    /// Displacements and velocities at the start.
-    fn initial(
-        settings: &Settings,
-        design: &Design,
-        start: Start,
-        amplitude: f64,
-        c: f64,
-        x: f64,
-    ) -> Result<(Vec<f64>, Vec<f64>), Invalid> {
-        let (count, ratio) = (design.count(), settings.real("density_ratio"));
-        let places: Vec<f64> = (0..count).map(|n| design.place(n)).collect();
-        let (displacement, velocity, strain): (Vec<f64>, Vec<f64>, f64) = match start {
-            Start::Pulse { width } => {
-                if 20.0 * width > design.length() {
-                    let most = design.length() / (20.0 * design.spacing);
-                    return Err(
-                        settings.invalid("pulse_width", format!("at most a twentieth of the chain, {most}, to start clear"))
-                    );
-                }
-                let u = |x_n: f64| amplitude * libm::exp(-0.5 * (x_n - x) * (x_n - x) / (width * width));
-                let displacement = places.iter().map(|&p| u(p)).collect();
-                // d'Alembert's wave to the right, u(x - c t): its velocity is -c du/dx.
-                let velocity = places.iter().map(|&p| c * (p - x) / (width * width) * u(p)).collect();
-                (displacement, velocity, 1.3 * amplitude / width * ratio.sqrt().max(1.0))
-            }
-            Start::Mode(j) => {
-                if ratio != 1.0 {
-                    return Err(settings.invalid("density_ratio", "1 for a start in a normal mode, whose shape is then a sine"));
-                }
-                let highest = Modes::of(design).map_or(0, |modes| modes.highest());
-                let modes = Modes::of(design).filter(|_| j <= highest);
-                let Some(modes) = modes else {
-                    return Err(settings.invalid("mode", format!("a whole number from 1 to {highest}")));
-                };
-                let displacement = modes.shape(j).iter().map(|s| amplitude * s).collect();
-                (displacement, vec![0.0; count], amplitude * modes.phase(j) / design.spacing)
-            }
-            Start::Drive { angular_frequency } => {
-                (vec![0.0; count], vec![0.0; count], 2.0 * amplitude * angular_frequency / c * ratio.sqrt().max(1.0))
-            }
-        };
-        if design.polarisation == Polarisation::Longitudinal && strain >= 1.0 {
-            let most = amplitude / strain;
-            return Err(settings.invalid("amplitude", format!("less than {most:.4}: longitudinal masses must keep their order")));
-        }
-        Ok((displacement, velocity))
     }
 
     fn trials(material: Material, ratio: f64) -> Result<Vec<Trial>, Invalid> {

@@ -131,6 +131,7 @@ fn copy_scene(into: &mut Scene, from: &Scene) {
     into.bodies.clone_from(&from.bodies);
     into.lines.clone_from(&from.lines);
     into.regions.clone_from(&from.regions);
+    into.map.clone_from(&from.map);
     into.labels.clone_from(&from.labels);
     into.trails.clone_from(&from.trails);
     into.title.clone_from(&from.title);

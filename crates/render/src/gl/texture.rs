@@ -10,6 +10,8 @@ use crate::RenderError;
 pub(crate) enum Format {
     /// One byte: how much of the texel is covered.
     Mask,
+    /// Four bytes: red, green, blue, opacity.
+    Colours,
     /// Four floats.
     Floats,
 }
@@ -18,6 +20,7 @@ impl Format {
     const fn bytes(self) -> usize {
         match self {
             Self::Mask => 1,
+            Self::Colours => 4,
             Self::Floats => 16,
         }
     }
@@ -25,6 +28,7 @@ impl Format {
     const fn names(self) -> (u32, u32, u32) {
         match self {
             Self::Mask => (glow::R8, glow::RED, glow::UNSIGNED_BYTE),
+            Self::Colours => (glow::RGBA8, glow::RGBA, glow::UNSIGNED_BYTE),
             Self::Floats => (glow::RGBA32F, glow::RGBA, glow::FLOAT),
         }
     }

@@ -2,11 +2,13 @@
 
 mod bodies;
 mod lines;
+mod maps;
 mod regions;
 mod trails;
 
 pub(crate) use bodies::Bodies;
 pub(crate) use lines::Lines;
+pub(crate) use maps::Maps;
 pub(crate) use regions::Regions;
 pub(crate) use trails::Trails;
 

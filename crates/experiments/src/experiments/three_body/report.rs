@@ -1,10 +1,12 @@
 //! What was measured on the system on show, beside its theory.
 
+use corpuscle_core::Vector;
 use corpuscle_observe::chart::Axis;
 use corpuscle_observe::{Chart, Check, Series, Style};
 
 use super::ThreeBody;
-use super::start::{OFFSETS, PRECISE};
+use super::orbits::Orbit;
+use super::start::{MOON, OFFSETS, PRECISE};
 
 /// Most points of a series in a chart.
 const MOST_POINTS: usize = 2000;
@@ -49,6 +51,28 @@ impl ThreeBody {
         if self.start.preset == "figure-eight" {
             return Some(check_of_closure(closure));
         }
+        if let Some(orbit) = Orbit::find(&self.start.preset) {
+            return Some(Check::at_most(
+                format!("{}: distance from the start after one period", orbit.name),
+                closure,
+                1e-6,
+                "Šuvakov and Dmitrašinović 2013 (doi:10.1103/PhysRevLett.110.114301), start refined to all digits: rounding of 1e-16, \
+                 grown by less than 1e10 in a period",
+            ));
+        }
+        if self.start.preset == "euler" {
+            // A displacement grows by at most exp(2 pi lambda/omega) a revolution, ten times over for its direction.
+            let growth = 10.0 * libm::exp(std::f64::consts::TAU * super::orbits::growth_of_line(self.start.masses()));
+            let own = self.runs[0].engine.integrator() == PRECISE && self.start.softening == 0.0;
+            return own.then(|| {
+                Check::at_most(
+                    "Euler's line: distance from the start after one period",
+                    closure,
+                    self.runs[0].bounds(None)[0] * growth,
+                    "Euler 1767: it turns rigidly; bound: rounding, grown by exp(2π λ/ω)",
+                )
+            });
+        }
         // A relative error of the energy shears the orbits by 6 pi a revolution at most, or grows exponentially. A fixed step
         // also shifts the phase, at constant energy: by no more than 2^(1 - p) of what twice the step does.
         let run = &self.runs[0];
@@ -61,6 +85,30 @@ impl ThreeBody {
                 closure,
                 bound,
                 "Lagrange 1772: it turns rigidly; bound: the error of the energy, sheared by 6π a revolution and growing as exp(λ t), and of the phase",
+            )
+        })
+    }
+
+    /// The Earth and the Moon together go round the Sun in Kepler's year.
+    pub(super) fn check_of_year(&self) -> Option<Check> {
+        let start = &self.start;
+        let period = start.duration;
+        let (last, [sun, earth, moon]) = (self.path.back()?, start.masses());
+        if start.magnified.is_none() || last.time < period * (1.0 - 1e-12) || start.softening > 0.0 {
+            return None;
+        }
+        let pair = |r: &[Vector<2>]| (r[1] * earth + r[2] * moon) / (earth + moon) - r[0];
+        let year = std::f64::consts::TAU / (start.constant * (sun + earth + moon)).sqrt();
+        let missed = (pair(&last.position) - pair(&start.particles.position)).norm();
+        let reduced = earth * moon / ((earth + moon) * (earth + moon));
+        let bound = 6.0 * std::f64::consts::PI * 3.0 * reduced * MOON * MOON;
+        ((period / year - 1.0).abs() < 1e-12).then(|| {
+            Check::at_most(
+                "Earth and Moon: distance of their centre from its start after Kepler's year",
+                missed,
+                bound,
+                "Kepler's third law; bound: the pair's quadrupole, 3 ν (a/R)² of the Sun's pull with ν the product of the shares \
+                 of mass, shears the orbit by at most 6π of it a revolution",
             )
         })
     }

@@ -3,12 +3,17 @@
 use corpuscle_core::{Axis, Boundary, Invalid, Particles, Vector};
 use corpuscle_time::{Gravity, Integrator, TimeDriven};
 
+use super::orbits::{Orbit, line_of_euler};
 use crate::Settings;
 
 /// Period of the figure-eight for `G = m = 1` (Chenciner and Montgomery 2000, doi:10.2307/2661357; numbers by Simó).
 pub(crate) const PERIOD_OF_EIGHT: f64 = 6.325_913_98;
 /// Offsets of the twins of every grain, along `x`.
 pub(crate) const OFFSETS: [f64; 2] = [1e-4, 1e-8];
+
+/// Masses over the Sun's (IAU 2015 nominal values and DE440), and the Moon's mean distance in astronomical units.
+const SUN_EARTH_MOON: [f64; 3] = [1.0, 3.003_489_6e-6, 3.694_303e-8];
+pub(crate) const MOON: f64 = 0.002_569_555;
 
 /// A system of three stars with dust, and how long and how finely to watch it.
 #[derive(Clone, Debug)]
@@ -35,6 +40,8 @@ pub(crate) struct Start {
     pub(crate) trail: usize,
     /// Half the width of the picture.
     pub(crate) view: f64,
+    /// How many times farther than it is from the second star the third one is drawn.
+    pub(crate) magnified: Option<f64>,
 }
 
 impl Start {
@@ -42,10 +49,11 @@ impl Start {
         let preset = settings.word("preset");
         let masses = match (settings.list("masses"), preset) {
             (&[a, b, c], _) => [a, b, c],
-            ([], "figure-eight") => [1.0, 1.0, 1.0],
+            ([], "sun-earth-moon") => SUN_EARTH_MOON,
             ([], "lagrange") => [1.0, 0.02, 0.01],
             ([], "pythagorean") => [3.0, 4.0, 5.0],
-            ([], _) => [1.0, 0.15, 0.1],
+            ([], "paper") => [1.0, 0.15, 0.1],
+            ([], _) => [1.0; 3],
             _ => return Err(settings.invalid("masses", "three of them, or none for the preset's own")),
         };
         let constant = settings.real("gravity_constant");
@@ -54,7 +62,13 @@ impl Start {
             "figure-eight" => Self::figure_eight(masses, constant, own("softening", 0.0)),
             "lagrange" => Self::lagrange(masses, constant, own("softening", 0.0)),
             "pythagorean" => Self::pythagorean(masses, constant, own("softening", 0.0)),
-            _ => Self::paper(masses, constant, own("softening", 0.2)),
+            "euler" => Self::euler(masses, constant, own("softening", 0.0)),
+            "sun-earth-moon" => Self::sun_earth_moon(masses, constant, own("softening", 0.0)),
+            "paper" => Self::paper(masses, constant, own("softening", 0.2)),
+            name => match Orbit::find(name) {
+                Some(orbit) => orbit.start(masses, constant, own("softening", 0.0)),
+                None => return Err(settings.invalid("preset", "a start that this view knows")),
+            },
         };
         let grains = if settings.is_given("grains") {
             settings.whole("grains")
@@ -106,6 +120,42 @@ impl Start {
         start
     }
 
+    /// Three stars in a row that turns rigidly, for any three masses.
+    pub(crate) fn euler(masses: [f64; 3], constant: f64, softening: f64) -> Self {
+        let total: f64 = masses.iter().sum();
+        let (x, square) = line_of_euler(masses, constant, softening);
+        let (places, rate) = ([0.0, 1.0, 1.0 + x], square.sqrt());
+        let centre = (0..3).map(|i| places[i] * masses[i] / total).sum::<f64>();
+        let stars = places.map(|place| (Vector([place - centre, 0.0]), Vector([0.0, rate * (place - centre)])));
+        let period = std::f64::consts::TAU / rate;
+        let mut start = Self::with_stars("euler", masses, stars, constant, softening);
+        let reach = centre.max(1.0 + x - centre);
+        (start.interval, start.duration, start.view, start.trail) = (period / 320.0, 4.0 * period, 1.2 * reach, 100);
+        start.period = Some(period);
+        start
+    }
+
+    /// Sun, Earth and Moon in astronomical units, with the time unit in which a year lasts `2 pi`: the pair on a circle about the
+    /// Sun, the Moon on a circle about the Earth; eccentricities and inclination are left out.
+    pub(crate) fn sun_earth_moon(masses: [f64; 3], constant: f64, softening: f64) -> Self {
+        let [sun, earth, moon] = masses;
+        let pair = earth + moon;
+        let circular = |mass: f64, r: f64| (constant * mass * r * r / (r * r + softening * softening).powi(3).sqrt()).sqrt();
+        let (year, month) = (circular(sun + pair, 1.0), circular(pair, MOON));
+        let along = |x: f64, v: f64| (Vector([x, 0.0]), Vector([0.0, v]));
+        let (outward, share) = (sun / (sun + pair), pair / (sun + pair));
+        let stars = [
+            along(-share, -share * year),
+            along(outward - MOON * moon / pair, outward * year - month * moon / pair),
+            along(outward + MOON * earth / pair, outward * year + month * earth / pair),
+        ];
+        let mut start = Self::with_stars("sun-earth-moon", masses, stars, constant, softening);
+        let period = std::f64::consts::TAU / year;
+        (start.interval, start.duration, start.view, start.trail) = (period / 1200.0, period, 1.25, 1200);
+        start.magnified = Some(30.0);
+        start
+    }
+
     /// Burrau's problem: three stars at rest at the corners of a right-angled triangle with sides 3, 4, 5.
     pub(crate) fn pythagorean(masses: [f64; 3], constant: f64, softening: f64) -> Self {
         let stars = [[1.0, 3.0], [-2.0, -1.0], [1.0, -1.0]].map(|r| (Vector(r), Vector::ZERO));
@@ -141,7 +191,13 @@ impl Start {
         start
     }
 
-    fn with_stars(preset: &str, masses: [f64; 3], stars: [(Vector<2>, Vector<2>); 3], constant: f64, softening: f64) -> Self {
+    pub(super) fn with_stars(
+        preset: &str,
+        masses: [f64; 3],
+        stars: [(Vector<2>, Vector<2>); 3],
+        constant: f64,
+        softening: f64,
+    ) -> Self {
         let mut particles = Particles::new();
         for (star, ((position, velocity), mass)) in (0u16..).zip(stars.into_iter().zip(masses)) {
             particles.push(position, velocity, mass, 0.0, star);
@@ -158,6 +214,7 @@ impl Start {
             period: None,
             trail: 1000,
             view: 1.0,
+            magnified: None,
         }
     }
 
