@@ -54,6 +54,10 @@ pub static REGISTRY: &[&Experiment] = &[
     &experiments::granular::EXPERIMENT,
     &experiments::sound::EXPERIMENT,
     &experiments::lennard_jones::EXPERIMENT,
+    &experiments::galton::EXPERIMENT,
+    &experiments::diffusion::EXPERIMENT,
+    &experiments::engines::EXPERIMENT,
+    &experiments::hard_disk_melting::EXPERIMENT,
 ];
 
 /// The experiment of this name.
