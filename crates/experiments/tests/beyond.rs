@@ -101,7 +101,7 @@ fn diffusion_of_spheres() {
     for (packing, particles) in [("0.15", "1200"), ("0.25", "600")] {
         let values =
             [("dimension", "3"), ("packing_fraction", packing), ("particles", particles), ("replicas", "8"), ("duration", "1.5")];
-        agrees_over_more_seeds("diffusion", &values, 10);
+        agrees_over_more_seeds("diffusion", &values, 16);
     }
 }
 

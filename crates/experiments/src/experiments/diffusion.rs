@@ -9,9 +9,7 @@
 //! approximation `D_1 = (1/(2 n s chi)) sqrt(kT/(pi m))` of discs, `(3/(8 n s^2 chi)) sqrt(kT/(pi m))` of spheres, and the contact value
 //! `chi`. Were each collision independent of those before, `D` would be 1.029 (1.019) times `D_1`, the sum of Sonine's
 //! series; what collisions remember makes it some tenths more in dense gases (Alder and Wainwright 1970,
-//! doi:10.1103/PhysRevA.1.18), and lets it grow without bound, as a logarithm, in large planes. Of spheres
-//! `D/D_1 = 1.01896 (1 + 0.05403 n + 6.3656 n^2 - 10.9425 n^3)`, `n` in cubes of the diameter (Erpenbeck and Wood 1991,
-//! doi:10.1103/PhysRevA.43.4254), less `2.837297 kT/(6 pi eta L)` in a periodic box (Yeh and Hummer 2004, doi:10.1021/jp0477147).
+//! doi:10.1103/PhysRevA.1.18), and lets it grow without bound, as a logarithm, in large planes.
 
 mod vessel;
 mod wave;
@@ -101,11 +99,6 @@ struct Diffusion<const D: usize> {
 
 resume!(Diffusion<const D> { values: [], parts: [vessels], set_up: [set, duration] });
 
-/// `D/D_1` of spheres of this number density, in cubes of the diameter.
-fn beyond_enskog(density: f64) -> f64 {
-    1.018_96 * (1.0 + density * (0.054_03 + density * (6.3656 - 10.9425 * density)))
-}
-
 impl<const D: usize> Diffusion<D> {
     fn new(settings: &Settings) -> Result<Self, Invalid> {
         let set = Set::<D>::new(settings)?;
@@ -149,14 +142,6 @@ impl<const D: usize> Diffusion<D> {
         let (from, times) = (last / 2, &self.vessels.times);
         let time = times[last] - times[from];
         self.vessels.mean(|vessel| (vessel.samples[last].spread[0] - vessel.samples[from].spread[0]) / (2.0 * time))
-    }
-
-    /// The same of spheres, from published values.
-    fn published(&self) -> f64 {
-        let density = self.set.density();
-        let viscosity = theory::viscosity_of_spheres(density, 1.0, self.set.temperature, 1.0);
-        let image = 2.837_297 * self.set.temperature / (6.0 * std::f64::consts::PI * viscosity * self.set.drop.side);
-        self.set.enskog() * beyond_enskog(density) - image
     }
 
     /// A wave of the drop over what the walks of the others make of it.
@@ -307,10 +292,6 @@ impl<const D: usize> Simulation for Diffusion<D> {
                 if self.is_old(sample) {
                     checks.push(self.wave(wave, sample).check(name, 1.0, reference));
                 }
-            }
-            if D == 3 {
-                let reference = "Enskog times Erpenbeck and Wood 1991, doi:10.1103/PhysRevA.43.4254, less the images' part";
-                checks.push(self.coefficient(last).check("coefficient of diffusion D", self.published(), reference));
             }
         }
         checks.extend(energy_check(&self.honesty()));

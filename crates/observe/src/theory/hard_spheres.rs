@@ -99,15 +99,6 @@ pub fn self_diffusion<const D: usize>(density: f64, diameter: f64, temperature: 
     temperature / (mass * friction)
 }
 
-/// Shear viscosity of hard spheres, Enskog: `1.016 (5/(16 s^2)) sqrt(m kT/pi) (1/chi + 0.8 y + 0.7614 chi y^2)` with
-/// `y = 2 pi n s^3/3` (Chapman and Cowling, chapter 16).
-pub fn viscosity_of_spheres(density: f64, diameter: f64, temperature: f64, mass: f64) -> f64 {
-    let chi = contact_value::<3>(packing_fraction::<3>(density, diameter));
-    let y = 2.0 * PI / 3.0 * density * diameter.powi(3);
-    let dilute = 1.016 * 5.0 / (16.0 * diameter * diameter) * (mass * temperature / PI).sqrt();
-    dilute * (1.0 / chi + 0.8 * y + 0.7614 * chi * y * y)
-}
-
 /// Hits per area and time on a wall, or passages through a hole, of a gas of number density `n` at the wall:
 /// `n sqrt(kT/(2 pi m))`, in any dimension. For hard spheres the density of centres at the wall is `P/(kT)`.
 pub fn wall_hit_rate(density: f64, temperature: f64, mass: f64) -> f64 {
@@ -135,8 +126,6 @@ mod tests {
         let speed = (kt / (PI * m)).sqrt();
         assert!((self_diffusion::<2>(n, s, kt, m) * 2.0 * n * s / speed - 1.0).abs() < 1e-8);
         assert!((self_diffusion::<3>(n, s, kt, m) * 8.0 * n * s * s / (3.0 * speed) - 1.0).abs() < 1e-8);
-        let viscosity = viscosity_of_spheres(n, s, kt, m);
-        assert!((viscosity * 16.0 * s * s / (5.0 * m * speed) - 1.016).abs() < 1e-7);
     }
 
     /// The virial theorem with the mean impulse of a contact: `Z = 1 + 2^(D-1) eta chi`.
