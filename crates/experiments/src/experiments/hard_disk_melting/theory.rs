@@ -31,8 +31,6 @@ pub(super) fn crystal(packing: f64) -> f64 {
 
 /// Closest packing, `pi/(2 sqrt3)`.
 const CLOSEST: f64 = 0.906_899_682_117_089_2;
-/// Packing fraction from which on the crystal's is held against the measurement.
-pub(super) const FIRM: f64 = 0.76;
 
 /// Pressure `P s^2/kT` at which liquid and hexatic phase stand side by side, and their packing fractions (Bernard and Krauth
 /// 2011, doi:10.1103/PhysRevLett.107.155704; by three methods Engel et al. 2013, doi:10.1103/PhysRevE.87.042134).
