@@ -57,7 +57,6 @@ pub static REGISTRY: &[&Experiment] = &[
     &experiments::galton::EXPERIMENT,
     &experiments::diffusion::EXPERIMENT,
     &experiments::engines::EXPERIMENT,
-    &experiments::hard_disk_melting::EXPERIMENT,
 ];
 
 /// The experiment of this name.

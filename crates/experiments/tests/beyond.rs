@@ -113,17 +113,6 @@ fn engines() {
 }
 
 #[test]
-fn hard_disk_melting() {
-    let few = [("side", "8"), ("packings", "0.4,0.5,0.56,0.6"), ("duration", "16")];
-    agrees_over_more_seeds("hard-disk-melting", &few, 10);
-    repeats(
-        "hard-disk-melting",
-        &[("side", "8"), ("small_side", "8"), ("packings", "0.6,0.7,0.8"), ("replicas", "2"), ("duration", "5")],
-    );
-    assert_eq!(refused("hard-disk-melting", &[("side", "9")]), "side");
-}
-
-#[test]
 #[ignore = "takes minutes"]
 fn lennard_jones() {
     agrees_over_more_seeds("lennard-jones", &[], 16);
