@@ -15,6 +15,7 @@ pub mod parameter;
 mod peek;
 mod replicas;
 pub mod simulation;
+mod study;
 mod tally;
 
 pub use frame::Frame;

@@ -50,6 +50,21 @@ fn experiment(name: &str, values: &[(&str, &str)], share: f64) {
 }
 
 #[test]
+fn every_process_of_a_gas() {
+    for process in ["effusion", "echo", "recurrence", "relaxation", "demon"] {
+        experiment("entropy", &[("process", process), ("particles", "30"), ("replicas", "2")], 0.5);
+    }
+    for process in ["adiabat", "piston", "warm-walls", "mixture"] {
+        experiment("ideal-gas", &[("process", process), ("particles", "30"), ("replicas", "3"), ("duration", "5")], 0.5);
+    }
+    experiment(
+        "brownian",
+        &[("sweep", "mass"), ("masses", "10,20"), ("particles", "60"), ("replicas", "2"), ("duration", "12")],
+        0.5,
+    );
+}
+
+#[test]
 fn every_experiment() {
     for name in REGISTRY.iter().map(|experiment| experiment.name) {
         let (values, share): (&[(&str, &str)], f64) = match name {

@@ -62,6 +62,30 @@ fn scores_of_spheres_are_standard_normal() {
     scores_are_standard_normal("3");
 }
 
+/// The other processes, small; few checks a run, so more seeds.
+#[test]
+fn scores_of_the_other_processes_are_standard_normal() {
+    let few = [("particles", "100"), ("replicas", "8"), ("duration", "20")];
+    for (process, seeds) in [("warm-walls", 16), ("mixture", 12), ("adiabat", 40), ("piston", 16)] {
+        common::agrees_over_more_seeds("ideal-gas", &[&few[..], &[("process", process)]].concat(), seeds);
+        for check in common::run("ideal-gas", 1, &[&few[..], &[("process", process), ("dimension", "3")]].concat(), 1).checks() {
+            assert!(check.passed, "{process}: {check:?}");
+        }
+    }
+}
+
+#[test]
+fn the_other_processes_repeat() {
+    for process in ["warm-walls", "mixture", "adiabat", "piston"] {
+        let values = [("process", process), ("particles", "40"), ("replicas", "4"), ("duration", "5")];
+        let (whole, stopped) = (run(3, &values), common::run("ideal-gas", 3, &values, 29));
+        assert_eq!(whole.checks(), stopped.checks(), "{process}");
+        assert_eq!(format!("{:?}", whole.charts()), format!("{:?}", stopped.charts()), "{process}");
+        assert_eq!(whole.checks(), common::checks_on(1, "ideal-gas", 3, &values), "{process}");
+        assert!(!whole.checks().is_empty(), "{process}");
+    }
+}
+
 /// Other masses, radii and temperatures only change the units.
 #[test]
 fn units_do_not_matter() {
@@ -109,6 +133,7 @@ fn nonsense_is_refused_by_name() {
         let error = Settings::new(find("ideal-gas").unwrap().parameters, 1).set_text(key, text).unwrap_err();
         assert_eq!((error.key.as_str(), error.value.as_str()), (key, text));
     }
+    assert_eq!(common::refused("ideal-gas", &[("process", "adiabat"), ("speeds", "1,0.5")]), "speeds");
 }
 
 #[test]

@@ -54,7 +54,8 @@ impl<const D: usize> Cells<D> {
 /// Boltzmann's `S/k = ln(N! / prod n_i!)`: the logarithm of the number of ways to distribute `N` labelled particles over the
 /// cells with these occupation numbers.
 pub fn configurational_entropy(occupation: &[u64]) -> f64 {
-    ln_factorial(occupation.iter().sum()) - occupation.iter().map(|&n| ln_factorial(n)).sum::<f64>()
+    // Most cells of a fine grid hold none or one, and ln 0! = ln 1! = 0.
+    ln_factorial(occupation.iter().sum()) - occupation.iter().filter(|&&n| n > 1).map(|&n| ln_factorial(n)).sum::<f64>()
 }
 
 /// The plug-in form `-N sum p_i ln p_i` with `p_i = n_i/N`, Stirling's approximation of the former. In equilibrium it is

@@ -112,7 +112,7 @@ pub fn equilibrium_h(dimension: usize, temperature: f64, mass: f64) -> f64 {
 }
 
 /// Volume of a shell in velocity space.
-fn shell(dimension: usize, inner: f64, outer: f64) -> f64 {
+pub fn shell(dimension: usize, inner: f64, outer: f64) -> f64 {
     match dimension {
         2 => ball_volume::<2>(outer) - ball_volume::<2>(inner),
         _ => ball_volume::<3>(outer) - ball_volume::<3>(inner),

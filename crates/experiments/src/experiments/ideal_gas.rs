@@ -1,34 +1,24 @@
-//! The ideal gas law, measured: hard particles between walls, one sweep each for Boyle, Charles and Avogadro.
+//! The ideal gas law, measured: hard particles in a box, and what an experimenter does to them.
 //!
-//! Every state point is run in several replicas, all of them independent; one more set of dense gases shows how the law fails.
-//! Standard errors come from the replicas: the pressure of an isolated gas has a memory (see the chart `averaging`), so that
-//! counting its hits would not give them.
+//! `laws` sweeps volume, temperature and number; `adiabat` compresses slowly and fast; `piston` lets a loaded piston swing;
+//! `warm_walls` keeps the temperature instead of the energy; `mixture` has two gases in one box.
 
+mod adiabat;
 mod charts;
 mod checks;
+mod laws;
+mod mixture;
+mod piston;
 mod system;
 mod theory;
+mod warm_walls;
 
-use corpuscle_checkpoint::{Resume, resume};
-use corpuscle_core::{Axis, Engine, Failure, Invalid, Random};
-use corpuscle_event::EventDriven;
-use corpuscle_observe::{Chart, Check, Estimate};
-use corpuscle_scene::{Colouring, Scene};
+use corpuscle_core::{Axis, Invalid};
 
-use crate::drawing::add_event_driven;
-use crate::hand::InHand;
-use crate::horizon::precision_horizon;
-use crate::simulation::{Honesty, Simulation, Table};
-use crate::tally::Tally;
-use crate::{Action, Experiment, Kind, Parameter, Settings, ensemble, gas, peek};
-use system::{Pace, State, System};
-
-/// Samples a crossing of the box, `a / sqrt(kT/m)`.
-const SAMPLES_PER_CROSSING: f64 = 20.0;
-/// Crossings of the slowest gas before the measurement: the lattice of the start is forgotten.
-const WARM_UP: f64 = 4.0;
-/// Collisions of a particle between two snapshots of the speeds: they are independent then.
-const COLLISIONS_BETWEEN_SNAPSHOTS: f64 = 10.0;
+use crate::simulation::Simulation;
+use crate::{Experiment, Kind, Parameter, Settings, gas};
+use laws::Laboratory;
+use system::State;
 
 /// The experiment.
 pub(crate) static EXPERIMENT: Experiment = Experiment {
@@ -39,6 +29,13 @@ pub(crate) static EXPERIMENT: Experiment = Experiment {
     dimensions: &[2, 3],
     engines: &["event-driven"],
     parameters: &[
+        Parameter {
+            name: "process",
+            unit: "",
+            help: "What is done: the sweeps of the laws, a slow and a fast compression (adiabat), a piston under a constant force, \
+                   walls with a temperature, a mixture of two gases.",
+            kind: Kind::Choice { default: "laws", options: &["laws", "adiabat", "piston", "warm-walls", "mixture"] },
+        },
         gas::DIMENSION,
         Parameter {
             name: "particles",
@@ -85,8 +82,27 @@ pub(crate) static EXPERIMENT: Experiment = Experiment {
         Parameter {
             name: "dense_packings",
             unit: "",
-            help: "Packing fractions of dense gases in periodic boxes, held against the equation of state.",
-            kind: Kind::List { default: &[0.05, 0.1, 0.2, 0.3], least: 0.01, most: 0.3, longest: 10 },
+            help: "Packing fractions of dense gases in periodic boxes, held against the equation of state up to 0.3.",
+            kind: Kind::List { default: &[0.05, 0.1, 0.2, 0.3], least: 0.01, most: 0.6, longest: 10 },
+        },
+        Parameter {
+            name: "speeds",
+            unit: "sqrt(kT/m)",
+            help: "Adiabat: speeds of the wall that halves the volume, the slowest first; the limit of slowness is extrapolated from \
+                   the first two.",
+            kind: Kind::List { default: &[0.025, 0.05, 0.2, 0.8, 3.2], least: 1e-3, most: 10.0, longest: 8 },
+        },
+        Parameter {
+            name: "piston_mass",
+            unit: "N m",
+            help: "Piston: its mass, in masses of all the gas.",
+            kind: Kind::Real { default: 2.0, least: 1.0, most: 1e4 },
+        },
+        Parameter {
+            name: "heavy_mass",
+            unit: "m",
+            help: "Mixture: mass of a particle of the heavy gas, which is half of the particles.",
+            kind: Kind::Real { default: 4.0, least: 0.1, most: 100.0 },
         },
         Parameter {
             name: "replicas",
@@ -105,263 +121,33 @@ pub(crate) static EXPERIMENT: Experiment = Experiment {
 };
 
 fn start(settings: &Settings) -> Result<Box<dyn Simulation>, Invalid> {
-    if settings.word("dimension") == "3" {
-        Ok(Box::new(Laboratory::<3>::new(settings)?))
-    } else {
-        Ok(Box::new(Laboratory::<2>::new(settings)?))
+    match settings.word("dimension") {
+        "3" => start_in::<3>(settings),
+        _ => start_in::<2>(settings),
     }
 }
 
-/// One of the three laws, each a sweep from the base state.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Law {
-    /// `P` against `1/V_acc`.
-    Boyle,
-    /// `P` against `T`; Gay-Lussac and Amontons at constant volume.
-    Charles,
-    /// `P` against `N`.
-    Avogadro,
+fn start_in<const D: usize>(settings: &Settings) -> Result<Box<dyn Simulation>, Invalid> {
+    Ok(match settings.word("process") {
+        "adiabat" => Box::new(adiabat::start::<D>(settings)?),
+        "piston" => Box::new(piston::start::<D>(settings)?),
+        "warm-walls" => Box::new(warm_walls::start::<D>(settings)?),
+        "mixture" => Box::new(mixture::start::<D>(settings)?),
+        _ => Box::new(Laboratory::<D>::new(settings)?),
+    })
 }
 
-impl Law {
-    const ALL: [Self; 3] = [Self::Boyle, Self::Charles, Self::Avogadro];
-
-    /// The state with this part of the base pressure.
-    fn state<const D: usize>(self, base: State, part: f64) -> State {
-        match self {
-            Self::Boyle => {
-                let packing = part * gas::packing::<D>(base.count, base.radius, base.side);
-                State { side: gas::side::<D>(base.count, base.radius, packing), ..base }
-            }
-            Self::Charles => State { temperature: part * base.temperature, ..base },
-            Self::Avogadro => State { count: (part * base.count as f64).round() as usize, ..base },
-        }
+impl State {
+    /// The base state of the settings, between walls.
+    fn base<const D: usize>(settings: &Settings) -> Self {
+        let (count, radius) = (settings.whole("particles"), settings.real("radius"));
+        let side = gas::side::<D>(count, radius, settings.real("packing_fraction"));
+        let (temperature, mass) = (settings.real("temperature"), settings.real("mass"));
+        Self { count, temperature, side, radius, mass, axis: Axis::Walls }
     }
 
-    /// What the law is about.
-    fn abscissa<const D: usize>(self, state: &State) -> f64 {
-        match self {
-            Self::Boyle => 1.0 / state.volume::<D>(),
-            Self::Charles => state.temperature,
-            Self::Avogadro => state.count as f64,
-        }
-    }
-}
-
-/// A state point with its replicas.
-struct Point<const D: usize> {
-    state: State,
-    /// Compressibility factor that theory expects of this very box.
-    expected: f64,
-    replicas: Vec<System<D>>,
-}
-
-impl<const D: usize> Point<D> {
-    /// Mean over the replicas.
-    fn estimate(&self, measure: impl Fn(&System<D>) -> f64) -> Estimate {
-        Estimate::from_replicas(&self.replicas.iter().map(measure).collect::<Vec<_>>())
-    }
-
-    fn wall_pressure(&self) -> Estimate {
-        self.estimate(|system| system.wall_pressure(&system.totals(), system.duration()))
-    }
-
-    fn virial_pressure(&self) -> Estimate {
-        self.estimate(|system| system.virial_pressure(&system.totals(), system.duration()))
-    }
-
-    /// Pressure that theory expects.
-    fn expected_pressure(&self) -> f64 {
-        self.expected * self.state.ideal_pressure::<D>()
-    }
-}
-
-/// All state points.
-struct Laboratory<const D: usize> {
-    /// The base state, in the window.
-    base: Point<D>,
-    /// The sweeps without the base state, which belongs to all of them.
-    sweeps: Vec<(Law, Point<D>)>,
-    /// Dense gases in periodic boxes, each with its packing fraction.
-    dense: Vec<(f64, Point<D>)>,
-    pace: Pace,
-    /// Samples of a full measurement.
-    samples: u64,
-    time: f64,
-    /// A copy of the system in the window, once a hand has touched it.
-    in_hand: Option<InHand<D>>,
-}
-
-impl<const D: usize> Laboratory<D> {
-    fn new(settings: &Settings) -> Result<Self, Invalid> {
-        let (count, radius, mass) = (settings.whole("particles"), settings.real("radius"), settings.real("mass"));
-        let packing = settings.real("packing_fraction");
-        let side = gas::side::<D>(count, radius, packing);
-        let base = State { count, temperature: settings.real("temperature"), side, radius, mass, axis: Axis::Walls };
-
-        let points = settings.whole("points");
-        let least = 1.0 / settings.real("span");
-        let parts = (0..points - 1).map(|k| least + (1.0 - least) * k as f64 / (points - 1) as f64);
-        let sweeps: Vec<(Law, State)> =
-            Law::ALL.iter().flat_map(|&law| parts.clone().map(move |part| (law, law.state::<D>(base, part)))).collect();
-
-        let crossing = |state: &State| state.open_side() / state.thermal_speed();
-        let slowest = sweeps.iter().map(|(_, state)| crossing(state)).fold(crossing(&base), f64::max);
-        let interval = crossing(&base) / SAMPLES_PER_CROSSING;
-        let pace = Pace {
-            interval,
-            clock: 1.0,
-            warm_up: (WARM_UP * slowest / interval).ceil() as u64,
-            between_snapshots: (COLLISIONS_BETWEEN_SNAPSHOTS / (base.collision_rate::<D>() * interval)).ceil() as u64,
-        };
-        let samples = (settings.real("duration") * SAMPLES_PER_CROSSING).round() as u64;
-
-        let mut stream = 0;
-        let mut point = |state: State, expected: f64, pace: Pace, keep: bool| -> Result<Point<D>, Invalid> {
-            stream += 1;
-            let replica = |r: u64| System::new(state, pace, keep, &mut Random::new(settings.seed, stream << 16 | r));
-            let replicas = (0..settings.whole("replicas") as u64).map(replica).collect::<Result<_, _>>()?;
-            Ok(Point { state, expected, replicas })
-        };
-        let walls = |state: &State| theory::between_walls::<D>(state.count, state.open_side(), 2.0 * state.radius);
-        let mut base_point = point(base, walls(&base), pace, true)?;
-        base_point.replicas[0].tally = Tally::of(count);
-        Ok(Self {
-            base: base_point,
-            sweeps: sweeps
-                .into_iter()
-                .map(|(law, state)| Ok((law, point(state, walls(&state), pace, false)?)))
-                .collect::<Result<_, Invalid>>()?,
-            dense: settings
-                .list("dense_packings")
-                .iter()
-                .map(|&packing| {
-                    let state = State { side: gas::side::<D>(count, radius, packing), axis: Axis::Periodic, ..base };
-                    let pace = Pace { clock: base.collision_rate::<D>() / state.collision_rate::<D>(), ..pace };
-                    Ok((packing, point(state, theory::periodic::<D>(count, packing), pace, false)?))
-                })
-                .collect::<Result<_, Invalid>>()?,
-            pace,
-            samples,
-            time: 0.0,
-            in_hand: None,
-        })
-    }
-
-    fn points(&self) -> impl Iterator<Item = &Point<D>> {
-        std::iter::once(&self.base)
-            .chain(self.sweeps.iter().map(|(_, point)| point))
-            .chain(self.dense.iter().map(|(_, point)| point))
-    }
-
-    /// The system in the window.
-    fn on_show(&self) -> (&EventDriven<D>, &Tally) {
-        let measured = &self.base.replicas[0];
-        self.in_hand.as_ref().map_or((&measured.engine, &measured.tally), |copy| (&copy.engine, &copy.tally))
-    }
-
-    /// The points of a law, the base state last.
-    fn sweep(&self, law: Law) -> impl Iterator<Item = &Point<D>> {
-        self.sweeps.iter().filter(move |(of, _)| *of == law).map(|(_, point)| point).chain(std::iter::once(&self.base))
-    }
-
-    /// Samples measured so far by every system.
-    fn measured(&self) -> u64 {
-        self.points().flat_map(|point| &point.replicas).map(|system| system.samples).min().unwrap_or(0)
-    }
-
-    /// Whether enough has been measured to say something: a tenth of the whole.
-    fn is_telling(&self) -> bool {
-        self.measured() > 0 && 10 * self.measured() >= self.samples
-    }
-}
-
-resume!(Point<const D> { values: [], parts: [replicas], set_up: [state, expected] });
-resume!(Laboratory<const D> { values: [time], parts: [base, sweeps, dense], set_up: [pace, samples, in_hand] });
-
-impl<const D: usize> Simulation for Laboratory<D> {
-    fn state(&self) -> Option<&dyn Resume> {
-        Some(self)
-    }
-
-    fn state_mut(&mut self) -> Option<&mut dyn Resume> {
-        Some(self)
-    }
-
-    fn time(&self) -> f64 {
-        self.time
-    }
-
-    fn end(&self) -> f64 {
-        (self.pace.warm_up + self.samples) as f64 * self.pace.interval
-    }
-
-    fn advance(&mut self, to: f64) -> Result<(), Failure> {
-        let sweeps = self.sweeps.iter_mut().map(|(_, point)| point);
-        let all = std::iter::once(&mut self.base).chain(sweeps).chain(self.dense.iter_mut().map(|(_, point)| point));
-        let mut systems: Vec<&mut System<D>> = all.flat_map(|point| &mut point.replicas).collect();
-        ensemble::for_each(&mut systems, |system| system.advance(to))?;
-        self.time = self.time.max(to);
-        self.in_hand.as_mut().map_or(Ok(()), |copy| copy.advance(to))
-    }
-
-    fn draw(&self, scene: &mut Scene) {
-        scene.clear();
-        scene.title = EXPERIMENT.title.into();
-        let state = self.base.state;
-        let reading = if self.is_telling() {
-            let z = self.base.wall_pressure() / state.ideal_pressure::<D>();
-            let (mean, error, expected) = (z.mean, z.standard_error, self.base.expected);
-            format!("P V_acc/(N kT) = {mean:.4} ± {error:.4} from the walls, {expected:.4} expected")
-        } else {
-            "warming up".into()
-        };
-        let (count, temperature, volume) = (state.count, state.temperature, state.volume::<D>());
-        scene.caption = format!("N = {count}, kT = {temperature}, V_acc = {volume:.0}: {reading}");
-        scene.colouring = Colouring::Speed { most: 3.0 * state.thermal_speed(), unit: String::new() };
-        let (engine, tally) = self.on_show();
-        add_event_driven(scene, engine, tally, 0.0, |_| 0.0);
-    }
-
-    fn charts(&self) -> Vec<Chart> {
-        charts::all(self)
-    }
-
-    fn checks(&self) -> Vec<Check> {
-        checks::all(self)
-    }
-
-    fn tables(&self) -> Vec<Table> {
-        vec![charts::table(self)]
-    }
-
-    fn honesty(&self) -> Honesty {
-        let systems = || self.points().flat_map(|point| &point.replicas);
-        let overlap = |system: &System<D>| {
-            let depth = system.engine.boundary().largest_overlap(&system.engine.snapshot());
-            depth / (2.0 * system.state.radius)
-        };
-        Honesty {
-            engine: "event-driven".into(),
-            work: systems().map(|system| system.engine.counts()).map(|counts| counts.collisions + counts.wall_collisions).sum(),
-            work_unit: "collisions",
-            energy_drift: systems().filter_map(|system| system.energy.largest()).reduce(f64::max),
-            largest_overlap: self.base.replicas.iter().map(overlap).reduce(f64::max),
-            rejected_events: Some(systems().map(|system| system.engine.counts().stale).sum()),
-            precision_horizon: precision_horizon(&self.base.replicas[0].engine),
-            ..Honesty::default()
-        }
-    }
-
-    fn next_event(&self) -> Option<f64> {
-        peek::next_contact(self.on_show().0, 1.5 * self.end())
-    }
-
-    fn moments(&self) -> Vec<f64> {
-        vec![0.0, self.pace.warm_up as f64 * self.pace.interval]
-    }
-    fn act(&mut self, action: Action) -> Result<(), Invalid> {
-        let measured = &self.base.replicas[0];
-        InHand::act(&mut self.in_hand, &measured.engine, &measured.tally, action)
+    /// Time in which a thermal particle crosses the box.
+    fn crossing(&self) -> f64 {
+        self.open_side() / self.thermal_speed()
     }
 }

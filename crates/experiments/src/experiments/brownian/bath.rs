@@ -8,7 +8,7 @@ use corpuscle_core::{Axis, Boundary, Contact, Engine, Failure, Invalid, Meeting,
 use corpuscle_event::{EventDriven, Rules};
 use corpuscle_observe::{Curves, Drift, MeanSquaredDisplacement, VelocityAutocorrelation};
 
-use super::Set;
+use super::set::Set;
 use crate::gas::{self, Species};
 use crate::tally::Tally;
 

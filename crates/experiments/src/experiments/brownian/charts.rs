@@ -4,7 +4,7 @@ use corpuscle_core::Axis as Faces;
 use corpuscle_observe::chart::{Axis, Chart, Scale, Series, Style};
 use corpuscle_observe::{Histogram, theory, vacf};
 
-use super::{Brownian, DIFFUSIVE};
+use super::path::{Brownian, DIFFUSIVE};
 
 impl<const D: usize> Brownian<D> {
     pub(super) fn displacement_chart(&self) -> Chart {
@@ -49,6 +49,9 @@ impl<const D: usize> Brownian<D> {
             Axis::linear("⟨V(0)·V(t)⟩ / ⟨V²⟩", ""),
         )
         .with(Series::theory("exp(−γt), Enskog friction", 0.0, set.longest_lag, 120, Scale::Linear, |t| libm::exp(-decay * t)))
+        .with(Series::theory("exact initial slope", 0.0, 1.0 / decay, 2, Scale::Linear, |t| {
+            1.0 - decay * set.closed_system_factor() * t
+        }))
         .with(Series::with_errors("measured", Style::Points, measured))
         .noting("The initial slope is exact; a dense fluid would remember longer (in 2-D with a long-time tail 1/t).")
     }

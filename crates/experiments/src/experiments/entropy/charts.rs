@@ -4,8 +4,9 @@ use std::f64::consts::LN_2;
 
 use corpuscle_observe::chart::{Axis, Chart, Scale, Series, Style};
 
+use super::Set;
+use super::opening::Entropy;
 use super::room::Process;
-use super::{Entropy, Set};
 
 impl<const D: usize> Entropy<D> {
     pub(super) fn entropy_chart(&self, process: Process) -> Chart {
@@ -14,7 +15,7 @@ impl<const D: usize> Entropy<D> {
             Process::Mixing => ("mixing", "Mixing: entropy against time", "k Σ Nₛ ln(V/Vₛ), thermodynamic limit"),
         };
         let count = self.set.particles as f64;
-        let rise = self.set.expected_rise(process) / count;
+        let rise = self.set.expected_rise(process, self.set.cells_along) / count;
         let level = |name: &str, value: f64| Series::theory(name, 0.0, self.duration, 2, Scale::Linear, |_| value);
         let mut chart = Chart::new(
             format!("entropy-{name}"),
@@ -27,18 +28,38 @@ impl<const D: usize> Entropy<D> {
         .with(Series::with_errors(
             "mean of the replicas",
             Style::Line,
-            self.curve(process, |room, sample| (sample.entropy - room.samples[0].entropy) / count),
+            self.curve(process, |room, sample| room.rise(sample) / count),
         ));
         if self.shown.process == process {
-            let start = self.shown.samples[0].entropy;
             let name = if self.echo.is_some() { "one room, velocities reversed" } else { "one room" };
-            let points = self.times.iter().zip(&self.shown.samples).map(|(&t, sample)| (t, (sample.entropy - start) / count));
+            let points = self.times.iter().zip(&self.shown.samples).map(|(&t, sample)| (t, self.shown.rise(sample) / count));
             chart = chart.with(Series::new(name, Style::Line, points));
         }
         chart.noting(match process {
             Process::Expansion => "The gas finds the empty half; with all velocities reversed the same mechanics empties it again.",
             Process::Mixing => "Nothing pushes the gases through each other: there are just more ways to be mixed.",
         })
+    }
+
+    /// The rise of the process on show, over cells of several sizes.
+    pub(super) fn scales_chart(&self) -> Chart {
+        let (process, count) = (self.shown.process, self.set.particles as f64);
+        let mut chart = Chart::new(
+            "cell-sizes",
+            "Entropy over cells of several sizes",
+            Axis::linear("time t", ""),
+            Axis::linear("rise of entropy (S − S₀)/N", "k_B"),
+        );
+        for (grid, along) in self.set.scales().into_iter().enumerate() {
+            let (rise, cells) = (self.set.expected_rise(process, along) / count, self.set.cells(along).len());
+            let measured = self.curve(process, |room, sample| (sample.entropies[grid] - room.samples[0].entropies[grid]) / count);
+            chart = chart
+                .with(Series::theory(format!("{cells} cells: equilibrium"), 0.0, self.duration, 2, Scale::Linear, |_| rise))
+                .with(Series::with_errors(format!("{cells} cells: measured"), Style::Line, measured));
+        }
+        chart.noting(
+            "How much entropy there is depends on how finely one looks; that it rises, and by about ln 2 a particle, does not.",
+        )
     }
 
     pub(super) fn left_chart(&self) -> Chart {

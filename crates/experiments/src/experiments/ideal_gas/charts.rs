@@ -7,8 +7,8 @@ use corpuscle_observe::chart::Axis;
 use corpuscle_observe::theory::{compressibility, mean_speed, wall_hit_rate};
 use corpuscle_observe::{Chart, Estimate, Scale, Series, Style};
 
+use super::laws::{Laboratory, Law, Point};
 use super::system::{Speeds, System, Totals};
-use super::{Laboratory, Law, Point};
 use crate::simulation::Table;
 
 /// All charts, the most telling first.

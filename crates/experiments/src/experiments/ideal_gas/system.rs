@@ -11,6 +11,7 @@ use corpuscle_observe::theory::collision_rate;
 use corpuscle_observe::{Drift, Schedule};
 
 use crate::gas::{self, Species};
+use crate::study::Vessel;
 use crate::tally::Tally;
 
 /// A state of the gas: what an experimenter sets.
@@ -52,16 +53,34 @@ impl State {
         collision_rate::<D>(density, 2.0 * self.radius, self.temperature, self.mass)
     }
 
-    fn start<const D: usize>(&self, random: &mut Random) -> Result<EventDriven<D>, Invalid> {
-        let boundary = Boundary::new([0.0; D], [self.side; D], self.axis);
+    /// Its box.
+    pub(super) fn boundary<const D: usize>(&self) -> Boundary<D> {
+        Boundary::new([0.0; D], [self.side; D], self.axis)
+    }
+
+    /// The particles in some box at exactly this temperature.
+    pub(super) fn particles<const D: usize>(&self, boundary: &Boundary<D>, random: &mut Random) -> Result<Particles<D>, Invalid> {
         let mut particles = Particles::new();
         let species = Species { count: self.count, radius: self.radius, mass: self.mass, index: 0 };
-        gas::add(&mut particles, &boundary, species, random)?;
+        gas::add(&mut particles, boundary, species, random)?;
         if self.axis == Axis::Walls {
             gas::heat(&mut particles, self.temperature, random);
         } else {
             maxwell(&mut particles, self.temperature, true, random);
         }
+        Ok(particles)
+    }
+
+    /// The gas in its box, watched from this time on.
+    pub(super) fn vessel<const D: usize>(&self, wait: f64, random: &mut Random) -> Result<Vessel<D>, Invalid> {
+        let boundary = self.boundary();
+        let particles = self.particles(&boundary, random)?;
+        Vessel::new(boundary, particles, wait, random)
+    }
+
+    fn start<const D: usize>(&self, random: &mut Random) -> Result<EventDriven<D>, Invalid> {
+        let boundary = self.boundary();
+        let particles = self.particles(&boundary, random)?;
         EventDriven::new(boundary, particles, Rules::default())
     }
 }
@@ -81,7 +100,7 @@ pub(super) struct Totals<const D: usize> {
 }
 
 impl<const D: usize> Totals<D> {
-    const ZERO: Self = Self { walls: [0.0; D], hits: 0, squares: 0.0, virial: 0.0, collisions: 0 };
+    pub(super) const ZERO: Self = Self { walls: [0.0; D], hits: 0, squares: 0.0, virial: 0.0, collisions: 0 };
 
     /// What was counted since an earlier reading.
     pub(super) fn since(&self, earlier: &Self) -> Self {

@@ -6,6 +6,11 @@ use std::f64::consts::PI;
 use corpuscle_core::particles::ball_volume;
 use corpuscle_observe::distribution::ln_gamma;
 
+use crate::gas;
+
+/// Packing fraction up to which the virial series is as sharp as the measurements.
+pub(super) const DENSEST: f64 = 0.3;
+
 /// Coefficients `b_k` of `Z = 1 + sum b_k eta^(k-1)`, from `b_2` on: `B_k / B_2^(k-1)` times `2^((D-1)(k-1))`, with the
 /// values to `B_10` of Clisby and McCoy 2006 (doi:10.1007/s10955-005-8080-0); beyond, to `b_16`, the differences of the last
 /// three are continued in a straight line.
@@ -46,6 +51,13 @@ pub(super) fn periodic<const D: usize>(count: usize, packing: f64) -> f64 {
     let slope = 1.0 + series::<D>(packing, 2, |k| k);
     let curvature = series::<D>(packing, 2, |k| k * (k - 1.0));
     bulk::<D>(packing) - curvature / slope / (2.0 * count as f64)
+}
+
+/// `ln Q` of `N` hard spheres whose centres have a box with these sides: pairs as in [`gas::ln_configurations`], the higher terms
+/// of the fluid's free energy, `N sum b_k eta^(k-1)/(k-1)`.
+pub(super) fn ln_configurations<const D: usize>(count: usize, sides: [f64; D], diameter: f64) -> f64 {
+    let packing = count as f64 * ball_volume::<D>(0.5 * diameter) / sides.iter().product::<f64>();
+    gas::ln_configurations(count, sides, diameter) - count as f64 * series::<D>(packing, 3, |k| 1.0 / (k - 1.0))
 }
 
 /// `P V_acc / (N k T)` on the walls of a cube (square) whose centres-accessible side is `a`, for `N` hard spheres of diameter
