@@ -142,7 +142,7 @@ impl Galton {
 
     fn is_lively(&self) -> bool {
         let size = self.set.ball + self.set.peg;
-        self.set.restitution >= LIVELY && TIGHT[0] <= size && size <= TIGHT[1]
+        self.set.restitution >= LIVELY && (TIGHT[0]..=TIGHT[1]).contains(&size)
     }
 
     /// Gaps behind the last row, by halves from the middle, and the share of balls in each.
@@ -168,7 +168,7 @@ impl Galton {
         .with(Series::new("binomial: fair and forgetful", Style::Theory, fair));
         if let Some(walk) = self.walk() {
             let ends = walk.ends();
-            let place = |gap: i32| (gap + 3 * rows as i32) / 2;
+            let place = |gap: i32| i32::midpoint(gap, 3 * rows as i32);
             let walk = bins.iter().filter_map(|&(gap, _)| Some((0.5 * f64::from(gap), *ends.get(place(gap) as usize)?)));
             chart = chart.with(Series::new("remembering one deflection", Style::Theory, walk));
         }

@@ -12,7 +12,7 @@ pub(super) fn binomial(rows: usize, gap: i32) -> f64 {
     if reach > n || (n - gap) % 2 != 0 {
         return 0.0;
     }
-    let right = ((n + gap) / 2) as u64;
+    let right = i32::midpoint(n, gap) as u64;
     let n = rows as u64;
     libm::exp(ln_factorial(n) - ln_factorial(right) - ln_factorial(n - right) - rows as f64 * std::f64::consts::LN_2)
 }
@@ -27,7 +27,7 @@ pub(super) struct Walk {
 
 /// The place of a deflection in [`KINDS`].
 fn kind(deflection: i32) -> usize {
-    ((deflection.clamp(-3, 3) + 3) / 2) as usize
+    i32::midpoint(deflection.clamp(-3, 3), 3) as usize
 }
 
 impl Walk {
