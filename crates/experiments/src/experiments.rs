@@ -3,7 +3,10 @@
 pub(crate) mod atmosphere;
 pub(crate) mod billiard;
 pub(crate) mod brownian;
+pub(crate) mod diffusion;
+pub(crate) mod engines;
 pub(crate) mod entropy;
+pub(crate) mod galton;
 pub(crate) mod granular;
 pub(crate) mod ideal_gas;
 pub(crate) mod lennard_jones;

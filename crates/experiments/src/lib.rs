@@ -55,6 +55,9 @@ pub static REGISTRY: &[&Experiment] = &[
     &experiments::granular::EXPERIMENT,
     &experiments::sound::EXPERIMENT,
     &experiments::lennard_jones::EXPERIMENT,
+    &experiments::galton::EXPERIMENT,
+    &experiments::diffusion::EXPERIMENT,
+    &experiments::engines::EXPERIMENT,
 ];
 
 /// The experiment of this name.

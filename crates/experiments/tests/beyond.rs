@@ -81,6 +81,37 @@ fn sound() {
     assert_eq!(refused("sound", &[("packing_fraction", "0.7")]), "packing_fraction");
 }
 
+/// Fair, and forgetful in the long run: three agreements a run.
+#[test]
+fn galton() {
+    agrees_over_more_seeds("galton", &[("balls", "200"), ("replicas", "16")], 16);
+    repeats("galton", &[("replicas", "4"), ("balls", "120")]);
+    assert_eq!(refused("galton", &[("ball_radius", "0.3")]), "ball_radius");
+}
+
+#[test]
+fn diffusion() {
+    agrees_over_more_seeds("diffusion", &[("particles", "600"), ("replicas", "12")], 12);
+    repeats("diffusion", &[("replicas", "3"), ("particles", "200")]);
+    assert_eq!(refused("diffusion", &[("dimension", "3"), ("packing_fraction", "0.6")]), "packing_fraction");
+}
+
+#[test]
+fn diffusion_of_spheres() {
+    for (packing, particles) in [("0.15", "1200"), ("0.25", "600")] {
+        let values =
+            [("dimension", "3"), ("packing_fraction", packing), ("particles", particles), ("replicas", "8"), ("duration", "1.5")];
+        agrees_over_more_seeds("diffusion", &values, 16);
+    }
+}
+
+#[test]
+fn engines() {
+    agrees_over_more_seeds("engines", &[("particles", "80"), ("replicas", "6")], 12);
+    repeats("engines", &[("replicas", "3"), ("particles", "40"), ("duration", "8")]);
+    assert_eq!(refused("engines", &[("hardness", "1")]), "hardness");
+}
+
 #[test]
 #[ignore = "takes minutes"]
 fn lennard_jones() {

@@ -77,6 +77,9 @@ fn every_experiment() {
             "lennard-jones" => (&[("particles", "256"), ("duration", "6")], 1.0),
             "granular" => (&[("replicas", "2"), ("particles", "50"), ("crowd", "100"), ("duration", "5")], 1.0),
             "sound" => (&[("replicas", "3"), ("particles", "100"), ("duration", "0.6")], 1.0),
+            "galton" => (&[("replicas", "4"), ("balls", "60")], 1.0),
+            "diffusion" => (&[("replicas", "3"), ("particles", "150"), ("duration", "0.6")], 1.0),
+            "engines" => (&[("replicas", "3"), ("particles", "40"), ("duration", "6")], 1.0),
             _ => (&[], 1.0),
         };
         experiment(name, values, share);

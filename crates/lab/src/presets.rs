@@ -60,6 +60,33 @@ const PRESETS: &[(&str, &[Preset])] = &[
             preset("in space", &[("dimension", "3")]),
         ],
     ),
+    (
+        "galton",
+        &[
+            preset("lively balls", &[]),
+            preset("tired balls that roll", &[("restitution", "0.4")]),
+            preset("nearly forgetful", &[("ball_radius", "0.11"), ("restitution", "0.68")]),
+            preset("two thousand balls", &[("balls", "2000")]),
+        ],
+    ),
+    (
+        "diffusion",
+        &[
+            preset("a drop in the plane", &[]),
+            preset("thin gas, long flights", &[("packing_fraction", "0.02")]),
+            preset("nearly a liquid", &[("packing_fraction", "0.55")]),
+            preset("in space", &[("dimension", "3")]),
+        ],
+    ),
+    (
+        "engines",
+        &[
+            preset("hard discs and nearly hard ones", &[]),
+            preset("a hundred times as hard", &[("hardness", "1e6")]),
+            preset("steps that are too long", &[("steps_per_contact", "2"), ("hardness", "1000")]),
+            preset("a thin gas", &[("packing_fraction", "0.02")]),
+        ],
+    ),
 ];
 
 /// The presets of an experiment.

@@ -90,6 +90,15 @@ pub fn mean_speed<const D: usize>(temperature: f64, mass: f64) -> f64 {
     }
 }
 
+/// Coefficient of self-diffusion in Enskog's first approximation, `(1/(2 n s chi)) sqrt(kT/(pi m))` of discs and
+/// `(3/(8 n s^2 chi)) sqrt(kT/(pi m))` of spheres (Chapman and Cowling, chapters 10 and 16): `kT/m` over the friction
+/// `2 nu/D` of the first collision of each particle, `nu` being the rate of collisions. The sum of Sonine's series is 1.029
+/// (1.019) times as much.
+pub fn self_diffusion<const D: usize>(density: f64, diameter: f64, temperature: f64, mass: f64) -> f64 {
+    let friction = 2.0 / D as f64 * collision_rate::<D>(density, diameter, temperature, mass);
+    temperature / (mass * friction)
+}
+
 /// Hits per area and time on a wall, or passages through a hole, of a gas of number density `n` at the wall:
 /// `n sqrt(kT/(2 pi m))`, in any dimension. For hard spheres the density of centres at the wall is `P/(kT)`.
 pub fn wall_hit_rate(density: f64, temperature: f64, mass: f64) -> f64 {
@@ -116,6 +125,15 @@ const fn two_or_three<const D: usize>() -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The textbook forms, of thin gases.
+    #[test]
+    fn thin_gases_diffuse_as_chapman_and_enskog_say() {
+        let (n, s, kt, m) = (1e-9, 0.7, 1.3, 2.0);
+        let speed = (kt / (PI * m)).sqrt();
+        assert!((self_diffusion::<2>(n, s, kt, m) * 2.0 * n * s / speed - 1.0).abs() < 1e-8);
+        assert!((self_diffusion::<3>(n, s, kt, m) * 8.0 * n * s * s / (3.0 * speed) - 1.0).abs() < 1e-8);
+    }
 
     /// The virial theorem with the mean impulse of a contact: `Z = 1 + 2^(D-1) eta chi`.
     #[test]

@@ -10,7 +10,7 @@ pub use brownian::{
 };
 pub use hard_spheres::{
     closed_flux_factor, collision_rate, compressibility, contact_value, excess_chemical_potential, mean_free_path, mean_speed,
-    packing_fraction, reduced_compressibility, speed_of_sound, speed_through_hole, wall_hit_rate,
+    packing_fraction, reduced_compressibility, self_diffusion, speed_of_sound, speed_through_hole, wall_hit_rate,
 };
 pub use waves::{
     chain_dispersion, chain_energy_reflection, chain_group_velocity, chain_wave_number, long_wave_speed, membrane_frequency,
