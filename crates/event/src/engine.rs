@@ -96,7 +96,8 @@ impl<const D: usize> EventDriven<D> {
     /// An engine at time 0.
     ///
     /// # Errors
-    /// When box, particles or rules make no sense, particles overlap, or one has no mass: names what is wrong.
+    /// When box, particles or rules make no sense, particles overlap, one has no mass or lies on a wall, pressed by the field: names
+    /// what is wrong.
     #[allow(clippy::needless_pass_by_value, reason = "the engine takes the particles over")]
     pub fn new(boundary: Boundary<D>, particles: Particles<D>, rules: Rules<D>) -> Result<Self, Invalid> {
         boundary.validate_particles(&particles)?;
@@ -133,6 +134,7 @@ impl<const D: usize> EventDriven<D> {
     fn start(boundary: Boundary<D>, particles: &Particles<D>, rules: Rules<D>, growth: Option<Growth>) -> Result<Self, Invalid> {
         let mut engine = Self::idle(boundary, particles, rules, growth)?;
         engine.begin_anew();
+        engine.refuse_lasting_contacts()?;
         Ok(engine)
     }
 

@@ -20,7 +20,7 @@ use corpuscle_scene::{Colour, Colouring, Scene, TrailPoint};
 
 use crate::hand::InHand;
 use crate::horizon::precision_horizon;
-use crate::{Action, Experiment, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, gas, peek};
+use crate::{Action, Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, gas, peek};
 use bath::{Bath, TRACER};
 
 /// The registry's entry.
@@ -382,6 +382,12 @@ impl<const D: usize> Simulation for Brownian<D> {
             self.set.displacement(self.elapsed()).sqrt(),
             bath.kicks.count
         );
+    }
+
+    fn frame(&self) -> Option<Frame> {
+        let bath = &self.baths[0];
+        let species = (0..bath.engine.particle_count()).map(|i| u16::from(i == TRACER));
+        Some(Frame::of_hard(&bath.engine, bath.started(), &["bath", "heavy particle"]).with_species(species))
     }
 
     fn charts(&self) -> Vec<Chart> {

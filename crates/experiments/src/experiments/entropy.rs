@@ -21,7 +21,7 @@ use corpuscle_scene::{Colour, Colouring, Label, Region, Scene};
 
 use crate::horizon::precision_horizon;
 use crate::tally::Tally;
-use crate::{Action, Experiment, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, gas, hand, peek};
+use crate::{Action, Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, gas, hand, peek};
 use room::{Process, Room, Sample};
 
 /// The registry's entry.
@@ -392,6 +392,16 @@ impl<const D: usize> Simulation for Entropy<D> {
             count - left,
             self.set.expected_rise(room.process)
         );
+    }
+
+    fn frame(&self) -> Option<Frame> {
+        let room = &self.shown;
+        let names: &[&str] = match room.process {
+            Process::Expansion => &["particles"],
+            Process::Mixing => &["started left", "started right"],
+        };
+        let species = room.species.iter().map(|&species| if names.len() > 1 { species } else { 0 });
+        Some(Frame::of_hard(&room.engine, room.opened(), names).with_species(species))
     }
 
     fn charts(&self) -> Vec<Chart> {

@@ -21,7 +21,7 @@ use corpuscle_observe::{Chart, Check, Schedule};
 use corpuscle_scene::Scene;
 use corpuscle_time::{Integrator, Signal};
 
-use crate::{Action, Experiment, Honesty, Kind, Parameter, Settings, Simulation, Table, ensemble};
+use crate::{Action, Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, Table, ensemble};
 use chain::{Chain, Design, End, Ends, Polarisation};
 use theory::{Dalembert, Modes};
 use trials::{Finding, Material, Trial};
@@ -472,6 +472,10 @@ impl Simulation for Wave {
 
     fn draw(&self, scene: &mut Scene) {
         self.picture(scene);
+    }
+
+    fn frame(&self) -> Option<Frame> {
+        Some(self.chain.frame())
     }
 
     fn charts(&self) -> Vec<Chart> {
