@@ -412,8 +412,8 @@ impl<const D: usize> EventDriven<D> {
                 time: contact.time,
                 particle: Some(contact.first.index),
                 cause: format!(
-                    "{STUCK} contacts without any time passing; set elastic_below (now {}) to a small positive speed, \
-                     and leave no particle at rest on a wall",
+                    "{STUCK} contacts without any time passing; set elastic_below (now {}) to a small positive speed, leave no \
+                     particle at rest on a wall, and none where a wall that moves would crush it",
                     self.rules.elastic_below
                 ),
             });

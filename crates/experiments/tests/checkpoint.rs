@@ -38,6 +38,15 @@ fn compare(name: &str, set_up: &dyn Fn() -> Box<dyn Simulation>, share: f64) {
     }
     unbroken.advance(end).unwrap();
     assert_eq!(told(unbroken.as_ref()), told(broken.as_ref()), "{name}");
+    let frame = unbroken.frame().unwrap_or_else(|| panic!("{name} has particles to show in files"));
+    let particles = &frame.particles;
+    assert!(!particles.is_empty() && particles.position.iter().chain(&particles.velocity).all(|r| r.is_finite()), "{name}");
+    assert!(
+        (0..particles.len()).all(|i| !frame.name(i).is_empty()) && (end - frame.time).abs() < 0.02 * end,
+        "{name}: {}",
+        frame.time
+    );
+    assert_eq!(Some(frame), broken.frame(), "{name}");
 }
 
 fn experiment(name: &str, values: &[(&str, &str)], share: f64) {

@@ -13,7 +13,7 @@
 mod row;
 
 use corpuscle_checkpoint::{Resume, resume};
-use corpuscle_core::{Axis, Boundary, Failure, Invalid, Particles, Vector};
+use corpuscle_core::{Axis as Faces, Boundary, Failure, Invalid, Particles, Vector};
 use corpuscle_observe::chart::{Axis, Scale, Series, Style};
 use corpuscle_observe::{Chart, Check, Schedule};
 use corpuscle_scene::{Body, Camera, Colour, Colouring, Line, Scene};
@@ -245,7 +245,7 @@ impl Simulation for Cradle {
             balls.push(Vector([i as f64 * (1.0 + self.gap) + place, 0.0]), Vector([velocity, 0.0]), masses[i], 0.5, 0);
         }
         let (reach, last) = (self.amplitude + 1.0, (places.len() - 1) as f64 * (1.0 + self.gap));
-        let space = Boundary::new([-reach, -1.0], [last + reach, 1.0], Axis::Open);
+        let space = Boundary::new([-reach, -1.0], [last + reach, 1.0], Faces::Open);
         Some(Frame::new(self.row.time(), &space, &balls, &["balls".into()]))
     }
 

@@ -17,7 +17,7 @@ use corpuscle_observe::{Chart, Check};
 use corpuscle_scene::Scene;
 use corpuscle_time::Integrator;
 
-use crate::{Action, Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, Table, ensemble, hand};
+use crate::{Action, Experiment, Honesty, Kind, Parameter, Settings, Simulation, Table, ensemble, hand};
 use conservation::{Frame, Run};
 use dust::Parting;
 use fate::Fate;
@@ -308,10 +308,10 @@ impl Simulation for ThreeBody {
         self.draw_into(scene);
     }
 
-    fn frame(&self) -> Option<Frame> {
+    fn frame(&self) -> Option<crate::Frame> {
         let engine = &self.runs[0].engine;
         let names: Vec<String> = (1..=3).map(|star| format!("star {star}")).chain(["dust".into()]).collect();
-        Some(Frame::new(engine.time(), engine.boundary(), engine.particles(), &names))
+        Some(crate::Frame::new(engine.time(), engine.boundary(), engine.particles(), &names))
     }
 
     fn charts(&self) -> Vec<Chart> {

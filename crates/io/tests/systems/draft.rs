@@ -92,8 +92,9 @@ impl Draft<'_> {
         }
         if chance(self.random, 0.3) {
             for _ in 0..=self.random.below(3) {
-                let centre: Vec<f64> = self.sides.iter().map(|side| side * self.random.uniform()).collect();
-                let radius = between(self.random, 0.0, 0.6);
+                // Where a moving wall leaves a particle room beside them.
+                let centre: Vec<f64> = self.sides.iter().map(|side| side * between(self.random, 0.35, 0.65)).collect();
+                let radius = between(self.random, 0.0, 0.45);
                 self.add(&format!("[[obstacle]]\ncentre = {centre:?}\nradius = {radius:?}"));
             }
         }
@@ -138,7 +139,7 @@ pub(crate) fn draft(seed: u64) -> String {
     let random = &mut random;
     let hard = chance(random, 0.7);
     let dimension = 2 + random.below(2) as usize;
-    let sides: Vec<f64> = (0..dimension).map(|_| between(random, 6.0, 12.0)).collect();
+    let sides: Vec<f64> = (0..dimension).map(|_| between(random, 5.0, 9.0)).collect();
     let kinds = ["periodic", "walls", "open"];
     let same = one_of(random, &kinds);
     let mixed = chance(random, 0.4);
@@ -160,7 +161,8 @@ pub(crate) fn draft(seed: u64) -> String {
         draft.add("[growth]\nrate = 0.3");
     }
     for kind in 0..=draft.random.below(2) {
-        let (count, radius) = (1 + draft.random.below(25), if hard { between(draft.random, 0.05, 0.45) } else { 0.45 });
+        let most = if hard { 60 } else { 25 };
+        let (count, radius) = (1 + draft.random.below(most), if hard { between(draft.random, 0.05, 0.45) } else { 0.45 });
         let (mass, temperature) =
             (between(draft.random, 0.2, 5.0), if chance(draft.random, 0.9) { between(draft.random, 0.2, 1.5) } else { 0.0 });
         draft.add(&format!("[[species]]\nname = 'kind {kind}'\ncount = {count}\nradius = {radius:?}\nmass = {mass:?}\ntemperature = {temperature:?}"));

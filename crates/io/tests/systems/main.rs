@@ -5,6 +5,7 @@
 
 mod draft;
 mod invariants;
+mod regressions;
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -95,7 +96,7 @@ fn from_environment(name: &str) -> Option<u64> {
 /// As many as `FUZZ_SYSTEMS` says, from the seed `FUZZ_SEED` on.
 #[test]
 fn random_systems_keep_their_invariants() {
-    let wanted = from_environment("FUZZ_SYSTEMS").unwrap_or(400);
+    let wanted = from_environment("FUZZ_SYSTEMS").unwrap_or(2000);
     let first = from_environment("FUZZ_SEED").unwrap_or(0);
     let (mut census, mut failures, mut done, mut seed) = (Census::default(), vec![], 0, first);
     while done < wanted {
@@ -131,6 +132,6 @@ fn random_systems_keep_their_invariants() {
     }
     println!("{:?}", census.furniture);
     assert!(failures.is_empty(), "{} of {wanted} broke:\n\n{}", failures.len(), failures[..failures.len().min(40)].join("\n\n"));
-    assert!(census.kinds.len() == 16 || wanted < 400, "both engines, both dimensions, all kinds of boxes: {:?}", census.kinds);
-    assert!(census.furniture.values().all(|&count| count > 0) || wanted < 400, "{:?}", census.furniture);
+    assert!(census.kinds.len() == 16 || wanted < 2000, "both engines, both dimensions, all kinds of boxes: {:?}", census.kinds);
+    assert!(census.furniture.values().all(|&count| count > 0) || wanted < 2000, "{:?}", census.furniture);
 }
