@@ -71,7 +71,8 @@ mod tests {
 
     #[test]
     fn a_limit_of_the_process_is_read() {
-        let limits = |soft: &str| format!("Limit  Soft Limit  Hard Limit  Units\nMax address space     {soft}     unlimited     bytes\n");
+        let limits =
+            |soft: &str| format!("Limit  Soft Limit  Hard Limit  Units\nMax address space     {soft}     unlimited     bytes\n");
         assert_eq!(address_space(&limits("1536000000")), Some(1_536_000_000.0));
         assert_eq!(address_space(&limits("unlimited")), None);
     }

@@ -47,7 +47,7 @@ impl Frame {
 
     /// The particles of an event-driven engine now, with the time counted from `start` on its clock.
     pub(crate) fn of_hard<const D: usize>(engine: &EventDriven<D>, start: f64, names: &[&str]) -> Self {
-        let names: Vec<String> = names.iter().map(ToString::to_string).collect();
+        let names: Vec<String> = names.iter().map(|&name| name.to_owned()).collect();
         Self::new(engine.time() - start, engine.boundary(), &engine.snapshot(), &names)
     }
 

@@ -140,11 +140,11 @@ fn of_a_chain() {
 }
 
 const PERIODIC: u64 = 0xcd6e_49b6_2597_2bff;
-const PERIODIC_PLANE: u64 = 1;
-const WALLS_PLANE: u64 = 2;
-const MIXED: u64 = 3;
-const MIXED_PLANE: u64 = 4;
-const WALLS: u64 = 0x410f_52cd_a2f4_4ebb;
+const PERIODIC_PLANE: u64 = 0x366a_b24b_730a_7adc;
+const WALLS_PLANE: u64 = 0xbbac_8b3d_cf8c_5665;
+const MIXED: u64 = 0xa5b8_a7ae_4ff8_8e17;
+const MIXED_PLANE: u64 = 0x40e5_0b67_199f_02a3;
+const WALLS: u64 = 0xf5dd_8703_0956_5931;
 const BATH: u64 = 0x5fb8_fa74_ed10_2285;
 const STARS: u64 = 0x4be0_a82f_11f7_8a0b;
 const STARS_AGAIN: u64 = 0xc3f5_84b5_601f_84bf;
