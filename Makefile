@@ -33,6 +33,7 @@ kill: setup-test ## A quarter of an hour: 200 kills at random moments, each run 
 fuzz: setup ## Ten minutes or so: strangers' files, read or refused; tens of thousands of random systems, all invariants on
 	FUZZ_FACTOR=30 $(CARGO) test --release --locked -p corpuscle-event --test invariants
 	FUZZ_CASES=100000 $(CARGO) test --release --locked -p corpuscle-io --test fuzz -- --nocapture
+	FUZZ_SYSTEMS=20000 $(CARGO) test --release --locked -p corpuscle-io --test systems -- --nocapture
 
 lint: ## Format and house rules
 	$(CARGO) fmt --all --check

@@ -33,13 +33,19 @@ fn particles(scenario: &Scenario) -> f64 {
     whole("particles").or(whole("masses")).unwrap_or(0.0) * systems
 }
 
-/// Bytes there are for us, where the system tells: free memory, and no more than a container may have.
+/// Bytes there are for us, where the system tells: free memory, and no more than a container or a process (`ulimit -v`) may have.
 pub(crate) fn available() -> Option<f64> {
     let free = fs::read_to_string("/proc/meminfo").ok()?;
     let line = free.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
     let free = 1024.0 * line.trim().strip_suffix("kB")?.trim().parse::<f64>().ok()?;
     let limit = fs::read_to_string("/sys/fs/cgroup/memory.max").ok().and_then(|text| text.trim().parse::<f64>().ok());
-    Some(limit.map_or(free, |limit| limit.min(free)))
+    let of_process = fs::read_to_string("/proc/self/limits").ok().and_then(|text| address_space(&text));
+    Some([limit, of_process].into_iter().flatten().fold(free, f64::min))
+}
+
+/// The soft limit of the address space in the words of `/proc/self/limits`; none when there is none.
+fn address_space(limits: &str) -> Option<f64> {
+    limits.lines().find_map(|line| line.strip_prefix("Max address space"))?.split_whitespace().next()?.parse().ok()
 }
 
 /// Refuses what asks for more memory than there is.
@@ -57,4 +63,17 @@ pub(crate) fn admit(scenario: &Scenario) -> Result<(), Refusal> {
 /// `3.2 GB`.
 pub(crate) fn bytes(count: f64) -> String {
     if count < 1e9 { format!("{:.0} MB", count / 1e6) } else { format!("{:.1} GB", count / 1e9) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_limit_of_the_process_is_read() {
+        let limits =
+            |soft: &str| format!("Limit  Soft Limit  Hard Limit  Units\nMax address space     {soft}     unlimited     bytes\n");
+        assert_eq!(address_space(&limits("1536000000")), Some(1_536_000_000.0));
+        assert_eq!(address_space(&limits("unlimited")), None);
+    }
 }

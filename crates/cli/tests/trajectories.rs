@@ -363,3 +363,32 @@ fn checkpoints_are_exported_and_lost_trajectories_are_missed() {
     assert!(complaint(&output(folder.path(), &["resume", "out", "--quiet"])).contains("something that is no file"));
     ran(&output(folder.path(), &["resume", "out", "--quiet", "--no-trajectory"]));
 }
+
+/// The registered experiments, too, write what is on show.
+#[test]
+fn an_experiment_writes_its_particles() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = [
+        "run",
+        "newton-cradle",
+        "--set",
+        "balls=4",
+        "--duration",
+        "2",
+        "--out",
+        "out",
+        "--trajectory",
+        "path.xyz",
+        "--every",
+        "0.5",
+    ];
+    ran(&output(folder.path(), &[&run[..], &["--no-pictures", "--quiet"]].concat()));
+    let file = folder.path().join("out/path.xyz");
+    let frames = found("ase", &file);
+    assert_eq!(frames.len(), 5);
+    for (k, frame) in frames.iter().enumerate() {
+        let own = trajectory::read(&file, Some(k as u64)).unwrap();
+        assert_eq!((own.position.len(), own.time), (4, Some(0.5 * k as f64)));
+        same("position", &frame["position"], &own.position.iter().flat_map(|r| r.0).collect::<Vec<_>>(), EXACT);
+    }
+}

@@ -55,7 +55,7 @@ impl Invalid {
 
 /// A run that cannot go on: which particle, when and why.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("at t = {time}{}: {cause}", .particle.map(|i| format!(", particle {i}")).unwrap_or_default())]
+#[error("at t = {time:?}{}: {cause}", .particle.map(|i| format!(", particle {i}")).unwrap_or_default())]
 pub struct Failure {
     /// Physical time of the failure.
     pub time: f64,

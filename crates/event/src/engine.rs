@@ -96,7 +96,8 @@ impl<const D: usize> EventDriven<D> {
     /// An engine at time 0.
     ///
     /// # Errors
-    /// When box, particles or rules make no sense, particles overlap, or one has no mass: names what is wrong.
+    /// When box, particles or rules make no sense, particles overlap, one has no mass or lies on a wall, pressed by the field: names
+    /// what is wrong.
     #[allow(clippy::needless_pass_by_value, reason = "the engine takes the particles over")]
     pub fn new(boundary: Boundary<D>, particles: Particles<D>, rules: Rules<D>) -> Result<Self, Invalid> {
         boundary.validate_particles(&particles)?;
@@ -133,6 +134,7 @@ impl<const D: usize> EventDriven<D> {
     fn start(boundary: Boundary<D>, particles: &Particles<D>, rules: Rules<D>, growth: Option<Growth>) -> Result<Self, Invalid> {
         let mut engine = Self::idle(boundary, particles, rules, growth)?;
         engine.begin_anew();
+        engine.refuse_lasting_contacts()?;
         Ok(engine)
     }
 
@@ -410,8 +412,8 @@ impl<const D: usize> EventDriven<D> {
                 time: contact.time,
                 particle: Some(contact.first.index),
                 cause: format!(
-                    "{STUCK} contacts without any time passing; set elastic_below (now {}) to a small positive speed, \
-                     and leave no particle at rest on a wall",
+                    "{STUCK} contacts without any time passing; set elastic_below (now {}) to a small positive speed, leave no \
+                     particle at rest on a wall, and none where a wall that moves would crush it",
                     self.rules.elastic_below
                 ),
             });

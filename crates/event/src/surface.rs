@@ -220,6 +220,27 @@ impl<const D: usize> Surface<D> {
         }
     }
 
+    /// Whether a particle lies on this surface and is pressed against it: it would touch it for ever, which is no collision. From a
+    /// wall with a temperature it is thrown.
+    pub(crate) fn carries(&self, particle: &Flight<D>, field: Vector<D>, time: f64) -> bool {
+        let (arrow, radius) = (self.arrow(particle.position), particle.radius);
+        let (reach, scale) = match &self.shape {
+            Shape::Plane(plane) if plane.is_open_at(particle.position) => return false,
+            Shape::Plane(plane) => (radius, plane.at.abs() + radius),
+            Shape::Driven(face) => (radius, face.motion.at(time).0.abs() + radius),
+            Shape::Rim { .. } => (radius, radius),
+            Shape::Round(obstacle) => (radius + obstacle.radius, radius + obstacle.radius),
+        };
+        // On the other side of a thin plate the field that presses here lifts there.
+        let off = match &self.shape {
+            Shape::Plane(Plane { axis, at, .. }) => arrow[*axis] * (at - particle.position[*axis]),
+            _ => self.distance(particle.position, time),
+        };
+        let touches = (off - reach).abs() <= (4.0 * f64::EPSILON * scale).max(f64::MIN_POSITIVE);
+        let still = particle.velocity.dot(arrow) / arrow.norm() == self.velocity(time);
+        self.temperature.is_none() && touches && still && field.dot(arrow) > 0.0
+    }
+
     /// Radius of what is touched; infinity for flat things, and for rims, whose edges are taken as hard as walls.
     pub(crate) fn radius(&self) -> f64 {
         if let Shape::Round(obstacle) = &self.shape { obstacle.radius } else { f64::INFINITY }

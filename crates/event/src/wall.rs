@@ -1,6 +1,6 @@
 //! A particle meets what is no particle: when, and what comes of it.
 
-use corpuscle_core::{Contact, Random, Vector};
+use corpuscle_core::{Contact, Invalid, Random, Vector};
 
 use crate::Rules;
 use crate::engine::EventDriven;
@@ -21,6 +21,31 @@ impl<const D: usize> EventDriven<D> {
     #[inline]
     pub(crate) fn has_surfaces(&self) -> bool {
         !self.surfaces.is_empty() || self.piston.is_some()
+    }
+
+    /// Refuses a particle that lies on a surface, pressed against it by the field: it would touch it without end at one instant.
+    pub(crate) fn refuse_lasting_contacts(&self) -> Result<(), Invalid> {
+        if self.rules.field == Vector::ZERO {
+            return Ok(());
+        }
+        for (id, &i) in self.slots.iter().enumerate() {
+            let (flight, time) = (&self.flights[i as usize], self.epoch + self.now);
+            let carries = |number: u32| self.surfaces.get(number).carries(flight, self.rules.field, time);
+            let by_an_obstacle = || match self.neighbours.region(i as usize) {
+                _ if !self.surfaces.has_obstacles() => false,
+                Some(region) => self.surfaces.obstacles_near(region).iter().copied().any(carries),
+                None => self.surfaces.obstacles().any(carries),
+            };
+            if self.surfaces.everywhere().any(carries) || by_an_obstacle() {
+                return Err(Invalid::new(
+                    format!("velocity of particle {id}"),
+                    format!("{:?}", flight.velocity.0),
+                    "a velocity off the wall or obstacle it touches, against which the field presses it, or a place off that: \
+                     hard particles bounce and do not lie",
+                ));
+            }
+        }
+        Ok(())
     }
 
     /// The state of a particle has changed: plans its next contact with a surface or the piston.

@@ -1,6 +1,7 @@
 //! A system at one instant, its dimension erased: what a frame of a trajectory holds.
 
-use corpuscle_core::{Axis, Boundary, Particles, Vector};
+use corpuscle_core::{Axis, Boundary, Engine, Particles, Vector};
+use corpuscle_event::EventDriven;
 
 /// Thickness of the box of a planar system, whose particles lie in its middle.
 const SLAB: f64 = 1.0;
@@ -42,6 +43,18 @@ impl Frame {
             names: names.to_vec(),
             particles: erased,
         }
+    }
+
+    /// The particles of an event-driven engine now, with the time counted from `start` on its clock.
+    pub(crate) fn of_hard<const D: usize>(engine: &EventDriven<D>, start: f64, names: &[&str]) -> Self {
+        let names: Vec<String> = names.iter().map(|&name| name.to_owned()).collect();
+        Self::new(engine.time() - start, engine.boundary(), &engine.snapshot(), &names)
+    }
+
+    /// The same particles with the species that the experiment knows them by.
+    pub(crate) fn with_species(mut self, species: impl Iterator<Item = u16>) -> Self {
+        self.particles.species.iter_mut().zip(species).for_each(|(kept, known)| *kept = known);
+        self
     }
 
     /// Name of the species of a particle; `X`, the usual sign for any particle, where it has none.

@@ -47,7 +47,7 @@ pub trait Simulation: Send {
         vec![0.0]
     }
 
-    /// All particles now, for a trajectory; none of an experiment that has no particles to show in files.
+    /// All particles now, of replicas those on show, for a trajectory; none of an experiment that has no particles.
     fn frame(&self) -> Option<Frame> {
         None
     }

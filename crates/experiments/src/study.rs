@@ -13,7 +13,7 @@ use crate::hand::InHand;
 use crate::horizon::precision_horizon;
 use crate::replicas::{Member, Replicas, energy_check, honesty};
 use crate::tally::Tally;
-use crate::{Action, Honesty, Simulation, drawing, peek};
+use crate::{Action, Frame, Honesty, Simulation, drawing, peek};
 
 /// A gas in a box, its measurement begun at some time on the engine's clock.
 pub(crate) struct Vessel<const D: usize> {
@@ -197,6 +197,11 @@ impl<const D: usize, S: Study<D>> Simulation for Running<D, S> {
         let (engine, tally) = self.in_hand.as_ref().map_or((&vessel.engine, &vessel.tally), |copy| (&copy.engine, &copy.tally));
         drawing::add_event_driven(scene, engine, tally, vessel.started, |i| self.study.shade(first, i));
         self.study.draw(&self.specimens, scene);
+    }
+
+    fn frame(&self) -> Option<Frame> {
+        let vessel = self.on_show();
+        Some(Frame::of_hard(&vessel.engine, vessel.started, &["particles"]))
     }
 
     fn charts(&self) -> Vec<Chart> {

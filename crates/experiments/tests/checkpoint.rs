@@ -5,7 +5,7 @@
 
 use corpuscle_checkpoint::{Reader, Writer};
 use corpuscle_core::Random;
-use corpuscle_experiments::{Honesty, REGISTRY, Settings, Simulation, find, free};
+use corpuscle_experiments::{Frame, Honesty, REGISTRY, Settings, Simulation, find, free};
 
 fn written(simulation: &dyn Simulation) -> Vec<u8> {
     let mut out = Writer::new();
@@ -19,8 +19,8 @@ fn told(simulation: &dyn Simulation) -> String {
     format!("{:?}\n{charts:?}\n{checks:?}\n{tables:?}\n{:?}", simulation.time(), simulation.honesty())
 }
 
-/// Runs to `share` of the whole, unbroken and in pieces.
-fn compare(name: &str, set_up: &dyn Fn() -> Box<dyn Simulation>, share: f64) {
+/// Runs to `share` of the whole, unbroken and in pieces; tells when that is, and what all particles are doing then.
+fn compare(name: &str, set_up: &dyn Fn() -> Box<dyn Simulation>, share: f64) -> (f64, Option<Frame>) {
     let mut random = Random::new(91, 0);
     let mut unbroken = set_up();
     let end = share * unbroken.end();
@@ -38,9 +38,20 @@ fn compare(name: &str, set_up: &dyn Fn() -> Box<dyn Simulation>, share: f64) {
     }
     unbroken.advance(end).unwrap();
     assert_eq!(told(unbroken.as_ref()), told(broken.as_ref()), "{name}");
+    assert_eq!(unbroken.frame(), broken.frame(), "{name}");
+    (end, unbroken.frame())
 }
 
-fn experiment(name: &str, values: &[(&str, &str)], share: f64) {
+/// A frame for a trajectory: particles that are named and finite, at the end of the run.
+fn assert_frame(name: &str, (end, frame): (f64, Option<Frame>)) {
+    let frame = frame.unwrap_or_else(|| panic!("{name} has particles to show in files"));
+    let particles = &frame.particles;
+    assert!(particles.position.iter().chain(&particles.velocity).all(|r| r.is_finite()), "{name}");
+    let named = (0..particles.len()).all(|i| !frame.name(i).is_empty());
+    assert!(named && (end - frame.time).abs() < 0.02 * end, "{name}: {}", frame.time);
+}
+
+fn experiment(name: &str, values: &[(&str, &str)], share: f64) -> (f64, Option<Frame>) {
     let experiment = find(name).unwrap();
     let mut settings = Settings::new(experiment.parameters, 5);
     for (key, text) in values {
@@ -82,7 +93,7 @@ fn every_experiment() {
             "engines" => (&[("replicas", "3"), ("particles", "40"), ("duration", "6")], 1.0),
             _ => (&[], 1.0),
         };
-        experiment(name, values, share);
+        assert_frame(name, experiment(name, values, share));
     }
 }
 
@@ -104,7 +115,7 @@ fn other_settings() {
 fn free_systems() {
     for (name, text) in SYSTEMS {
         let system: free::System = toml::from_str(text).unwrap();
-        compare(name, &|| free::start(&system, 3).unwrap(), 1.0);
+        assert_frame(name, compare(name, &|| free::start(&system, 3).unwrap(), 1.0));
     }
 }
 

@@ -29,12 +29,17 @@ fn check<const D: usize>(name: &str, set_up: impl Fn() -> TimeDriven<D> + Sync, 
     }
 }
 
-fn fluid(axes: Axis, force: fn() -> Box<dyn Force<3>>, integrator: Integrator) -> impl Fn() -> TimeDriven<3> {
+/// So many particles in a box ten wide.
+fn fluid<const D: usize>(
+    (count, axes): (usize, [Axis; D]),
+    force: fn() -> Box<dyn Force<D>>,
+    integrator: Integrator,
+) -> impl Fn() -> TimeDriven<D> {
     move || {
-        let boundary = Boundary::<3>::new([0.0; 3], [10.0; 3], axes);
+        let boundary = Boundary { axes, ..Boundary::<D>::new([0.0; D], [10.0; D], Axis::Walls) };
         let mut random = Random::new(62, 0);
         let mut particles = Particles::new();
-        for place in lattice(&boundary, 500, 0.5, &mut random, |_| true).unwrap() {
+        for place in lattice(&boundary, count, 0.5, &mut random, |_| true).unwrap() {
             particles.push(place, Vector::ZERO, 1.0, 0.3, 0);
         }
         maxwell(&mut particles, 1.0, true, &mut random);
@@ -42,16 +47,54 @@ fn fluid(axes: Axis, force: fn() -> Box<dyn Force<3>>, integrator: Integrator) -
     }
 }
 
+fn lennard_jones<const D: usize>() -> Box<dyn Force<D>> {
+    Box::new(PairForce::new(LennardJones { epsilon: 1.0, sigma: 1.0, cutoff: 2.5 }))
+}
+
+fn wca<const D: usize>() -> Box<dyn Force<D>> {
+    Box::new(PairForce::new(WeeksChandlerAndersen::new(1.0, 1.0)))
+}
+
+const STEP: f64 = 0.004;
+
 #[test]
-fn of_fluids() {
-    let dt = 0.004;
-    let lennard_jones =
-        || -> Box<dyn Force<3>> { Box::new(PairForce::new(LennardJones { epsilon: 1.0, sigma: 1.0, cutoff: 2.5 })) };
-    let wca = || -> Box<dyn Force<3>> { Box::new(PairForce::new(WeeksChandlerAndersen::new(1.0, 1.0))) };
-    check("periodic", fluid(Axis::Periodic, lennard_jones, Integrator::VelocityVerlet { dt }), 0.8, PERIODIC);
-    check("walls", fluid(Axis::Walls, wca, Integrator::Yoshida4 { dt }), 0.4, WALLS);
-    let bath = Integrator::Langevin { dt, temperature: 1.0, friction: 1.0, seed: 3 };
-    check("bath", fluid(Axis::Periodic, lennard_jones, bath), 0.4, BATH);
+fn of_a_periodic_fluid() {
+    let verlet = Integrator::VelocityVerlet { dt: STEP };
+    check("periodic", fluid((500, [Axis::Periodic; 3]), lennard_jones, verlet), 0.8, PERIODIC);
+}
+
+#[test]
+fn of_a_periodic_fluid_in_the_plane() {
+    let verlet = Integrator::VelocityVerlet { dt: STEP };
+    check("plane", fluid((64, [Axis::Periodic; 2]), lennard_jones, verlet), 4.0, PERIODIC_PLANE);
+}
+
+#[test]
+fn of_a_fluid_between_walls() {
+    check("walls", fluid((500, [Axis::Walls; 3]), wca, Integrator::Yoshida4 { dt: STEP }), 0.4, WALLS);
+}
+
+#[test]
+fn of_a_fluid_between_walls_in_the_plane() {
+    check("walls", fluid((64, [Axis::Walls; 2]), wca, Integrator::RungeKutta4 { dt: STEP }), 4.0, WALLS_PLANE);
+}
+
+#[test]
+fn of_a_mixed_box() {
+    let axes = [Axis::Walls, Axis::Periodic, Axis::Open];
+    check("mixed", fluid((500, axes), lennard_jones, Integrator::VelocityVerlet { dt: STEP }), 0.4, MIXED);
+}
+
+#[test]
+fn of_a_mixed_box_in_the_plane() {
+    let axes = [Axis::Periodic, Axis::Walls];
+    check("mixed", fluid((64, axes), wca, Integrator::Yoshida6 { dt: STEP }), 4.0, MIXED_PLANE);
+}
+
+#[test]
+fn of_a_heat_bath() {
+    let bath = Integrator::Langevin { dt: STEP, temperature: 1.0, friction: 1.0, seed: 3 };
+    check("bath", fluid((500, [Axis::Periodic; 3]), lennard_jones, bath), 0.4, BATH);
 }
 
 /// The same numbers with fewer instructions than this machine has: each in a process of its own, since they are chosen once.
@@ -97,7 +140,11 @@ fn of_a_chain() {
 }
 
 const PERIODIC: u64 = 0xcd6e_49b6_2597_2bff;
-const WALLS: u64 = 0x410f_52cd_a2f4_4ebb;
+const PERIODIC_PLANE: u64 = 0x366a_b24b_730a_7adc;
+const WALLS_PLANE: u64 = 0xbbac_8b3d_cf8c_5665;
+const MIXED: u64 = 0xa5b8_a7ae_4ff8_8e17;
+const MIXED_PLANE: u64 = 0x40e5_0b67_199f_02a3;
+const WALLS: u64 = 0xf5dd_8703_0956_5931;
 const BATH: u64 = 0x5fb8_fa74_ed10_2285;
 const STARS: u64 = 0x4be0_a82f_11f7_8a0b;
 const STARS_AGAIN: u64 = 0xc3f5_84b5_601f_84bf;

@@ -67,7 +67,7 @@ fn trajectory(arguments: &Arguments, simulation: &dyn Simulation, end: f64) -> R
     let Some(file) = &arguments.trajectory else { return Ok(None) };
     let refuse = |invalid| Refusal::new(Origin::CommandLine, invalid);
     if simulation.frame().is_none() {
-        return Err(refuse(Invalid::new("trajectory", file, "nothing: this experiment has no particles to show in files")));
+        return Err(refuse(Invalid::new("trajectory", file, "nothing: this experiment has no particles that a file could hold")));
     }
     Plan::new(file, arguments.every.unwrap_or(end / FRAMES), end).map(Some).map_err(refuse)
 }

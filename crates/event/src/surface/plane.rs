@@ -31,6 +31,11 @@ impl Gap {
 }
 
 impl Plane {
+    /// Whether a particle at this place has the gap before it.
+    pub(super) fn is_open_at<const D: usize>(&self, position: Vector<D>) -> bool {
+        self.gap.is_some_and(|gap| gap.holds(position[gap.along]))
+    }
+
     pub(super) fn contact_delay<const D: usize>(&self, particle: &Flight<D>, field: Vector<D>) -> f64 {
         let (r, v, axis) = (particle.position, particle.velocity, self.axis);
         // Upwards means towards the plane.

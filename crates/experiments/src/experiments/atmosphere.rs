@@ -21,7 +21,7 @@ use corpuscle_scene::{Camera, Colouring, Scene};
 use crate::gas::{self, Species};
 use crate::replicas::{Member, Replicas, Watch, energy_check, honesty};
 use crate::tally::Tally;
-use crate::{Experiment, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, peek};
+use crate::{Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, peek};
 use theory::Profile;
 
 /// The registry's entry.
@@ -421,6 +421,11 @@ impl<const D: usize> Simulation for Atmosphere<D> {
             scale(self.set.species[0].mass),
             scale(self.set.species[1].mass)
         );
+    }
+
+    fn frame(&self) -> Option<Frame> {
+        let column = &self.columns.members[0];
+        Some(Frame::of_hard(&column.engine, column.started, &["light", "heavy"]).with_species(column.species.iter().copied()))
     }
 
     fn charts(&self) -> Vec<Chart> {

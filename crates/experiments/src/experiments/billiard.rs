@@ -21,7 +21,7 @@ use corpuscle_scene::{Colour, Colouring, Scene, TrailPoint};
 
 use crate::replicas::{Replicas, energy_check, honesty};
 use crate::tally::Tally;
-use crate::{Experiment, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, peek};
+use crate::{Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, peek};
 use table::{Layout, Table, Twins};
 
 /// The registry's entry.
@@ -257,6 +257,10 @@ impl Simulation for Billiard {
                 std::f64::consts::LN_2 / (self.exponent().mean * self.layout.free_path())
             ),
         };
+    }
+
+    fn frame(&self) -> Option<Frame> {
+        Some(Frame::of_hard(self.twins.bundle(), 0.0, &["rays"]))
     }
 
     fn charts(&self) -> Vec<Chart> {

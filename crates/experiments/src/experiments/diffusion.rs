@@ -23,7 +23,7 @@ use corpuscle_scene::{Colouring, Scene};
 use crate::gas;
 use crate::replicas::{Replicas, energy_check, honesty};
 use crate::tally::Tally;
-use crate::{Experiment, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, peek};
+use crate::{Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, peek};
 use vessel::{BINS, Set, Vessel};
 
 /// The registry's entry.
@@ -268,6 +268,12 @@ impl<const D: usize> Simulation for Diffusion<D> {
             }
             None => format!("Enskog: D = {:.4}", self.set.enskog()),
         };
+    }
+
+    fn frame(&self) -> Option<Frame> {
+        let vessel = &self.vessels.members[0];
+        let species = (0..self.set.particles).map(|i| u16::from(vessel.is_marked(i)));
+        Some(Frame::of_hard(&vessel.engine, vessel.started, &["gas", "drop"]).with_species(species))
     }
 
     fn charts(&self) -> Vec<Chart> {

@@ -25,7 +25,7 @@ use corpuscle_scene::{Body, Camera, Colour, Colouring, Label, Scene};
 
 use crate::replicas::{Replicas, energy_check, honesty};
 use crate::tally::Tally;
-use crate::{Experiment, Honesty, Kind, Parameter, Settings, Simulation, Table, drawing, ensemble, peek};
+use crate::{Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, Table, drawing, ensemble, peek};
 use chords::STEPS;
 use pair::{Pair, Sample, Set};
 
@@ -258,6 +258,11 @@ impl Simulation for Engines {
             Some(time) => format!("they agreed until t = {time:.2}, for {:.1} collisions of a disc", time * self.set.rate()),
             None => "they agree so far".into(),
         };
+    }
+
+    /// Those of the event-driven engine.
+    fn frame(&self) -> Option<Frame> {
+        Some(Frame::of_hard(&self.pairs.members[0].hard, 0.0, &["discs"]))
     }
 
     fn charts(&self) -> Vec<Chart> {

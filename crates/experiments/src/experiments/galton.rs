@@ -20,7 +20,7 @@ use corpuscle_observe::{Chart, Check, Estimate};
 use corpuscle_scene::Scene;
 
 use crate::replicas::{Replicas, honesty};
-use crate::{Experiment, Honesty, Kind, Parameter, Settings, Simulation, Table, ensemble, peek};
+use crate::{Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, Table, ensemble, peek};
 use board::{Board, Landed, Set};
 use walk::{Walk, binomial};
 
@@ -241,6 +241,10 @@ impl Simulation for Galton {
             0..=9 => "line: what fair and forgetful pegs would make".into(),
             down => format!("{down} balls down: variance {variance:.2} (binomial {:.2})", 0.25 * self.set.rows as f64),
         };
+    }
+
+    fn frame(&self) -> Option<Frame> {
+        Some(Frame::of_hard(&self.boards.members[0].engine, 0.0, &["balls"]))
     }
 
     fn charts(&self) -> Vec<Chart> {

@@ -22,7 +22,7 @@ use corpuscle_scene::{Colouring, Scene};
 use crate::gas::{self, Species};
 use crate::replicas::{Member, Replicas, honesty};
 use crate::tally::Tally;
-use crate::{Experiment, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, peek};
+use crate::{Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, peek};
 
 /// The registry's entry.
 pub(crate) static EXPERIMENT: Experiment = Experiment {
@@ -346,6 +346,11 @@ impl<const D: usize> Simulation for Granular<D> {
             Self::haff(self.time(), self.crowd_cooling),
             2.0 * crowd.engine.counts().collisions as f64 / crowd.engine.particle_count() as f64
         );
+    }
+
+    fn frame(&self) -> Option<Frame> {
+        let crowd = &self.crowd.members[0].grains;
+        Some(Frame::of_hard(&crowd.engine, crowd.started, &["grains"]))
     }
 
     fn charts(&self) -> Vec<Chart> {

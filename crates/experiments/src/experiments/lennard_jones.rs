@@ -16,7 +16,7 @@ use corpuscle_observe::{Chart, Check, Estimate, RadialDistribution, Schedule, bl
 use corpuscle_scene::{Colouring, Scene};
 use corpuscle_time::{Force, Integrator, LennardJones, PairForce, TimeDriven};
 
-use crate::{Experiment, Honesty, Kind, Parameter, Settings, Simulation, drawing};
+use crate::{Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, drawing};
 
 /// The registry's entry.
 pub(crate) static EXPERIMENT: Experiment = Experiment {
@@ -310,6 +310,10 @@ impl Simulation for Fluid {
             let [known_energy, known_pressure] = self.state.expected.map(|known| known.mean);
             format!("mean so far: U/N = {energy:.3} (known: {known_energy:.3})   P = {pressure:.4} (known: {known_pressure:.4})")
         };
+    }
+
+    fn frame(&self) -> Option<Frame> {
+        Some(Frame::new(self.time(), self.engine.boundary(), self.engine.particles(), &["atoms".into()]))
     }
 
     fn charts(&self) -> Vec<Chart> {

@@ -13,12 +13,12 @@
 mod row;
 
 use corpuscle_checkpoint::{Resume, resume};
-use corpuscle_core::{Failure, Invalid};
+use corpuscle_core::{Axis as Faces, Boundary, Failure, Invalid, Particles, Vector};
 use corpuscle_observe::chart::{Axis, Scale, Series, Style};
 use corpuscle_observe::{Chart, Check, Schedule};
 use corpuscle_scene::{Body, Camera, Colour, Colouring, Line, Scene};
 
-use crate::{Experiment, Honesty, Kind, Parameter, Settings, Simulation};
+use crate::{Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation};
 use row::Row;
 
 /// The registry's entry.
@@ -236,6 +236,17 @@ impl Simulation for Cradle {
         scene.title = EXPERIMENT.title.into();
         scene.caption =
             format!("{} contacts   energy {:.1} %", self.row.contacts(), 100.0 * self.row.energy() / self.samples[0].energy);
+    }
+
+    fn frame(&self) -> Option<Frame> {
+        let (places, velocities, masses) = (self.row.places(), self.row.velocities(), self.row.masses());
+        let mut balls = Particles::<2>::new();
+        for (i, (&place, &velocity)) in places.iter().zip(&velocities).enumerate() {
+            balls.push(Vector([i as f64 * (1.0 + self.gap) + place, 0.0]), Vector([velocity, 0.0]), masses[i], 0.5, 0);
+        }
+        let (reach, last) = (self.amplitude + 1.0, (places.len() - 1) as f64 * (1.0 + self.gap));
+        let space = Boundary::new([-reach, -1.0], [last + reach, 1.0], Faces::Open);
+        Some(Frame::new(self.row.time(), &space, &balls, &["balls".into()]))
     }
 
     fn charts(&self) -> Vec<Chart> {

@@ -21,7 +21,7 @@ use corpuscle_scene::{Camera, Colouring, Scene};
 
 use crate::replicas::{Replicas, energy_check, honesty};
 use crate::tally::Tally;
-use crate::{Experiment, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, peek};
+use crate::{Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, peek};
 use tube::{BINS, Set, Tube};
 
 /// The registry's entry.
@@ -245,6 +245,11 @@ impl Simulation for Sound {
         } else {
             format!("equation of state: c = {:.3} √(kT/m)", self.set.speed / thermal)
         };
+    }
+
+    fn frame(&self) -> Option<Frame> {
+        let tube = &self.tubes.members[0];
+        Some(Frame::of_hard(tube.engine(), tube.started(), &["discs"]))
     }
 
     fn charts(&self) -> Vec<Chart> {

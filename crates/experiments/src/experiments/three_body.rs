@@ -274,6 +274,12 @@ impl Simulation for ThreeBody {
         self.draw_into(scene);
     }
 
+    fn frame(&self) -> Option<crate::Frame> {
+        let engine = &self.runs[0].engine;
+        let names: Vec<String> = (1..=3).map(|star| format!("star {star}")).chain(["dust".into()]).collect();
+        Some(crate::Frame::new(engine.time(), engine.boundary(), engine.particles(), &names))
+    }
+
     fn charts(&self) -> Vec<Chart> {
         let mut charts = vec![self.chart_of_parting()];
         if let Some(aside) = &self.aside {

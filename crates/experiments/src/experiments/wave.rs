@@ -26,7 +26,7 @@ use corpuscle_observe::{Chart, Check, Schedule};
 use corpuscle_scene::Scene;
 use corpuscle_time::{Integrator, Signal};
 
-use crate::{Action, Experiment, Honesty, Settings, Simulation, Table, ensemble};
+use crate::{Action, Experiment, Frame, Honesty, Settings, Simulation, Table, ensemble};
 use chain::{Chain, Design, End, Ends, Polarisation};
 use membrane::Membrane;
 use nonlinear::Nonlinear;
@@ -318,6 +318,10 @@ impl Simulation for Wave {
 
     fn draw(&self, scene: &mut Scene) {
         self.picture(scene);
+    }
+
+    fn frame(&self) -> Option<Frame> {
+        Some(self.chain.frame())
     }
 
     fn charts(&self) -> Vec<Chart> {

@@ -297,6 +297,11 @@ fn located(system: &System, error: Invalid) -> Invalid {
     let index = |text: &str| text.parse::<usize>().ok();
     let words: Vec<&str> = error.key.split(' ').collect();
     let key = match words[..] {
+        ["velocity", "of", "particle", i] if index(i).is_some_and(|i| i >= system.particles.len()) => {
+            // A generated particle got its velocity from a temperature.
+            let key = index(i).map(|i| source(system, i, "temperature"));
+            return Invalid { key: key.unwrap_or(error.key.clone()), value: format!("{}, {}", error.key, error.value), ..error };
+        }
         [property, "of", "particle", i] => index(i).map(|i| source(system, i, property)),
         ["particles", i, "and", j] => {
             // Only those placed by hand can overlap: what is generated keeps clear.

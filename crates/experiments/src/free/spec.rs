@@ -3,10 +3,13 @@
 mod start;
 mod walls;
 
+use std::fmt;
 use std::sync::Arc;
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::de::value::SeqAccessDeserializer;
+use serde::de::{self, IntoDeserializer, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
 pub use start::{Imported, Start};
 pub use walls::{Cylinder, Grown, Peg, Side, Swing, Wall};
 
@@ -101,13 +104,36 @@ pub struct Room {
 }
 
 /// One word for all axes, or one word an axis.
-#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Faces {
     /// The same across every axis.
     All(Face),
     /// One an axis.
     Each(Vec<Face>),
+}
+
+/// By hand: of a word that is none of the kinds, serde's untagged enumerations only say that nothing fits.
+impl<'de> Deserialize<'de> for Faces {
+    fn deserialize<S: Deserializer<'de>>(source: S) -> Result<Self, S::Error> {
+        struct Words;
+        impl<'de> Visitor<'de> for Words {
+            type Value = Faces;
+
+            fn expecting(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+                out.write_str("one of periodic, walls, open, or a list of these, one an axis")
+            }
+
+            fn visit_str<E: de::Error>(self, word: &str) -> Result<Faces, E> {
+                Face::deserialize(word.into_deserializer()).map(Faces::All)
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Faces, A::Error> {
+                Vec::deserialize(SeqAccessDeserializer::new(list)).map(Faces::Each)
+            }
+        }
+        source.deserialize_any(Words)
+    }
 }
 
 /// Kind of the two faces across an axis.

@@ -1,11 +1,12 @@
 //! Splitting methods: alternate kicks by the forces and free drifts, of lengths from a table.
 //!
 //! Every one of them is exact for each half of the energy alone, hence symplectic; those with one drift stay so with hard
-//! walls, where the drift is a billiard flow. A table read the same backwards makes the method reversible.
+//! walls, where the drift is a billiard flow. The others go through a wall and are thrown back as if their path had been a
+//! parabola. A table read the same backwards makes the method reversible.
 
 use corpuscle_core::Failure;
 
-use crate::system::System;
+use crate::system::{Path, System};
 
 /// A kick and the drift after it, as shares of the step.
 pub(crate) struct Stage {
@@ -93,6 +94,7 @@ pub(crate) fn step<const D: usize>(
 ) -> Result<(), Failure> {
     let (mut drifted, mut kicked) = (0.0, 0.0);
     let mut time = start;
+    let drifts = stages.iter().filter(|stage| stage.drift != 0.0).count();
     for (number, stage) in stages.iter().enumerate() {
         let lag = (drifted - kicked) * dt;
         kicked += stage.kick;
@@ -108,7 +110,8 @@ pub(crate) fn step<const D: usize>(
         time = if last { end } else { start + drifted * dt };
         system.hold(time);
         if last {
-            system.confine(end, dt)?;
+            let path = if drifts == 1 { Path::Straight } else { Path::Bent { kick: (drifted - kicked) * dt } };
+            system.confine(end, dt, path)?;
         }
     }
     Ok(())

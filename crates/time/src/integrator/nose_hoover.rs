@@ -20,7 +20,7 @@ use corpuscle_checkpoint::resume;
 use corpuscle_core::{Failure, Invalid};
 
 use super::composition::LENGTHS_4;
-use crate::system::System;
+use crate::system::{Path, System};
 
 /// One link of the chain.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -62,7 +62,7 @@ impl Chain {
         self.rub(system, 0.5 * dt);
         system.kick_and_drift(0.5 * dt, dt);
         system.hold(end);
-        system.confine(end, dt)?;
+        system.confine(end, dt, Path::Straight)?;
         system.accelerate(end, 0.0);
         system.kick(0.5 * dt);
         self.rub(system, 0.5 * dt);

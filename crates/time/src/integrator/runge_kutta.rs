@@ -2,7 +2,7 @@
 
 use corpuscle_core::{Failure, Vector};
 
-use crate::system::System;
+use crate::system::{Path, System};
 
 /// Butcher's table of an explicit method.
 pub(crate) struct Tableau {
@@ -58,7 +58,7 @@ impl<const D: usize> RungeKutta<D> {
         }
         self.place(system, weights, dt);
         system.hold(end);
-        system.confine(end, dt)
+        system.confine(end, dt, Path::Bent { kick: 0.0 })
     }
 
     /// Positions and velocities at the start of the step plus `dt sum w_j slope_j`.

@@ -2,7 +2,7 @@
 
 use corpuscle_core::{Failure, Invalid, Random, Vector};
 
-use crate::system::System;
+use crate::system::{Path, System};
 
 /// Streams of random numbers: one for each use.
 const NOISE: u64 = 0x4c41_4e47;
@@ -44,7 +44,7 @@ impl Bath {
                 }
                 system.kick_and_drift(0.0, 0.5 * dt);
                 system.hold(end);
-                system.confine(end, dt)?;
+                system.confine(end, dt, Path::Straight)?;
                 system.accelerate(end, 0.0);
                 system.kick(0.5 * dt);
                 system.hold(end);
@@ -62,12 +62,12 @@ impl Bath {
                 }
                 (system.fresh, system.doubtful) = (false, true);
                 system.hold(end);
-                system.confine(end, dt)?;
+                system.confine(end, dt, Path::Straight)?;
             }
             Self::Rescaling { temperature, relaxation_time, degrees_of_freedom, seed } => {
                 system.kick_and_drift(0.5 * dt, dt);
                 system.hold(end);
-                system.confine(end, dt)?;
+                system.confine(end, dt, Path::Straight)?;
                 system.accelerate(end, 0.0);
                 system.kick(0.5 * dt);
                 let kinetic = system.particles.kinetic_energy();

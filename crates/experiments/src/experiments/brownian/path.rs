@@ -9,7 +9,7 @@ use super::bath::{Bath, TRACER};
 use super::set::Set;
 use crate::hand::InHand;
 use crate::horizon::precision_horizon;
-use crate::{Action, Honesty, Settings, Simulation, drawing, ensemble, peek};
+use crate::{Action, Frame, Honesty, Settings, Simulation, drawing, ensemble, peek};
 
 /// Samples per relaxation time: Simpson's rule on the velocity correlation is then good to `20^-4 / 180`.
 pub(super) const RESOLUTION: f64 = 20.0;
@@ -236,6 +236,12 @@ impl<const D: usize> Simulation for Brownian<D> {
             self.set.displacement(self.elapsed()).sqrt(),
             bath.kicks.count
         );
+    }
+
+    fn frame(&self) -> Option<Frame> {
+        let bath = &self.baths[0];
+        let species = (0..bath.engine.particle_count()).map(|i| u16::from(i == TRACER));
+        Some(Frame::of_hard(&bath.engine, bath.started(), &["bath", "heavy particle"]).with_species(species))
     }
 
     fn charts(&self) -> Vec<Chart> {

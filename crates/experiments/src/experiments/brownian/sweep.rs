@@ -11,7 +11,7 @@ use corpuscle_scene::Scene;
 
 use super::path::Brownian;
 use super::set::Set;
-use crate::{Action, Honesty, Settings, Simulation};
+use crate::{Action, Frame, Honesty, Settings, Simulation};
 
 /// Kinds of particles side by side; all are watched for as many relaxation times of their own, on the clock of the first.
 pub(super) struct Sweep<const D: usize> {
@@ -89,6 +89,10 @@ impl<const D: usize> Simulation for Sweep<D> {
 
     fn draw(&self, scene: &mut Scene) {
         self.kinds[0].draw(scene);
+    }
+
+    fn frame(&self) -> Option<Frame> {
+        self.kinds[0].frame()
     }
 
     fn charts(&self) -> Vec<Chart> {

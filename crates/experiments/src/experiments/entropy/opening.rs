@@ -20,7 +20,7 @@ use super::room::{Process, Room, Sample};
 use crate::horizon::precision_horizon;
 use crate::replicas::{energy_check, honesty};
 use crate::tally::Tally;
-use crate::{Action, Honesty, Settings, Simulation, drawing, ensemble, hand, peek};
+use crate::{Action, Frame, Honesty, Settings, Simulation, drawing, ensemble, hand, peek};
 
 /// Samples taken of each room in the whole duration.
 const SAMPLES: usize = 400;
@@ -261,6 +261,16 @@ impl<const D: usize> Simulation for Entropy<D> {
             count - left,
             self.set.expected_rise(room.process, self.set.cells_along)
         );
+    }
+
+    fn frame(&self) -> Option<Frame> {
+        let room = &self.shown;
+        let names: &[&str] = match room.process {
+            Process::Expansion => &["particles"],
+            Process::Mixing => &["started left", "started right"],
+        };
+        let species = room.species.iter().map(|&species| if names.len() > 1 { species } else { 0 });
+        Some(Frame::of_hard(&room.vessel.engine, room.vessel.started(), names).with_species(species))
     }
 
     fn charts(&self) -> Vec<Chart> {

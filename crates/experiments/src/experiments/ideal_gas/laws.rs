@@ -17,7 +17,7 @@ use crate::hand::InHand;
 use crate::horizon::precision_horizon;
 use crate::simulation::{Honesty, Simulation, Table};
 use crate::tally::Tally;
-use crate::{Action, Settings, ensemble, gas, peek};
+use crate::{Action, Frame, Settings, ensemble, gas, peek};
 
 /// Samples a crossing of the box, `a / sqrt(kT/m)`.
 const SAMPLES_PER_CROSSING: f64 = 20.0;
@@ -233,6 +233,10 @@ impl<const D: usize> Simulation for Laboratory<D> {
         scene.colouring = Colouring::Speed { most: 3.0 * state.thermal_speed(), unit: String::new() };
         let (engine, tally) = self.on_show();
         add_event_driven(scene, engine, tally, 0.0, |_| 0.0);
+    }
+
+    fn frame(&self) -> Option<Frame> {
+        Some(Frame::of_hard(&self.base.replicas[0].engine, 0.0, &["particles"]))
     }
 
     fn charts(&self) -> Vec<Chart> {

@@ -8,6 +8,8 @@ use corpuscle_checkpoint::resume;
 use corpuscle_core::{Axis, Boundary, Engine, Failure, Invalid, Particles, Vector};
 use corpuscle_time::{Drive, Integrator, Pin, Signal, Spring, Springs, TimeDriven};
 
+use crate::Frame;
+
 /// Direction of the displacements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Polarisation {
@@ -185,6 +187,11 @@ impl Chain {
 
     pub(super) fn time(&self) -> f64 {
         self.engine.time()
+    }
+
+    /// All masses and anchors now.
+    pub(super) fn frame(&self) -> Frame {
+        Frame::new(self.engine.time(), self.engine.boundary(), self.engine.particles(), &["masses".into()])
     }
 
     pub(super) fn steps(&self) -> u64 {

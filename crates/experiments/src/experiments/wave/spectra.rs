@@ -12,7 +12,7 @@ use corpuscle_time::Integrator;
 
 use super::chain::{Chain, Design, Ends, Polarisation};
 use super::theory::{self, Modes};
-use crate::{Honesty, Settings, Simulation, Table};
+use crate::{Frame, Honesty, Settings, Simulation, Table};
 
 /// Stream of the random phases.
 const STREAM: u64 = 0xd15b;
@@ -176,6 +176,10 @@ impl Simulation for Spectra {
         ] {
             scene.labels.push(Label { at, text, colour: Colour::Ink });
         }
+    }
+
+    fn frame(&self) -> Option<Frame> {
+        Some(self.chain.frame())
     }
 
     fn charts(&self) -> Vec<Chart> {
