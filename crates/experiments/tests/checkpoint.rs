@@ -57,7 +57,7 @@ fn experiment(name: &str, values: &[(&str, &str)], share: f64) -> (f64, Option<F
     for (key, text) in values {
         settings.set_text(key, text).unwrap();
     }
-    compare(name, &|| (experiment.start)(&settings).unwrap(), share);
+    compare(name, &|| (experiment.start)(&settings).unwrap(), share)
 }
 
 #[test]
