@@ -1,7 +1,7 @@
 //! Every experiment, written down at any time and taken up again by one set up alike, measures what the unbroken one measures,
 //! to the last bit.
 
-#![allow(clippy::unwrap_used)] // in the helpers too: a test that cannot be set up has failed
+#![allow(clippy::unwrap_used, clippy::panic, reason = "in the helpers too: a test that cannot be set up has failed")]
 
 use corpuscle_checkpoint::{Reader, Writer};
 use corpuscle_core::Random;
