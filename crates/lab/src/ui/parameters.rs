@@ -248,13 +248,13 @@ fn field(ui: &mut Ui, model: &mut Model, parameter: &Parameter, value: &Value, l
 }
 
 /// Without a row of zeros before a tiny number.
-fn in_a_list(x: &f64) -> String {
-    if *x != 0.0 && x.abs() < 1e-4 { format!("{x:e}") } else { x.to_string() }
+fn in_a_list(x: f64) -> String {
+    if x != 0.0 && x.abs() < 1e-4 { format!("{x:e}") } else { x.to_string() }
 }
 
 /// A list is typed, and taken when the field is left.
 fn typed_list(ui: &mut Ui, model: &mut Model, parameter: &Parameter, list: &[f64], label: egui::Id, help: &str) -> Option<Value> {
-    let kept = || list.iter().map(in_a_list).collect::<Vec<_>>().join(", ");
+    let kept = || list.iter().copied().map(in_a_list).collect::<Vec<_>>().join(", ");
     let mut text = match &model.typed.list {
         Some((key, text)) if key == parameter.name => text.clone(),
         _ => kept(),
