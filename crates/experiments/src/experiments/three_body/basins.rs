@@ -101,8 +101,7 @@ impl Basins {
 
     /// Takes all grains through some stretches of time.
     fn ride(&mut self, skies: &[Sky]) -> Result<(), Failure> {
-        // With AVX-512 a step has been seen to come out otherwise than with everything else: not for what must be the same everywhere.
-        let (rules, instructions) = (self.rules, Instructions::detect().without_avx512());
+        let (rules, instructions) = (self.rules, Instructions::detect());
         let all = |flock: &mut Flock| {
             for sky in skies {
                 if !flock.is_open() {

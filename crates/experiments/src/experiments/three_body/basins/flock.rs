@@ -133,19 +133,22 @@ impl Ride<'_> {
         let share = f64::from(tick) / f64::from(TICKS);
         let (stars, speeds) = (self.sky.positions(share), self.sky.velocities(share));
         let Flock { r, v, fate, .. } = &*self.flock;
-        let open = fate.map(|fate| if fate == Fate::Open { 1.0 } else { 0.0 });
         let mut rates = [0.0f64; LANES];
         for star in 0..3 {
             for lane in 0..LANES {
                 let (x, y) = (stars[star][0] - r[0][lane], stars[star][1] - r[1][lane]);
                 let (u, w) = (speeds[star][0] - v[0][lane], speeds[star][1] - v[1][lane]);
                 let d2 = x * x + y * y + self.sky.softening_squared;
-                rates[lane] = rates[lane].max((u * u + w * w + self.sky.strength[star] / d2.sqrt()) / d2);
+                // Compared, not `f64::max`: what Rust 1.95 makes of that for AVX-512 has given other numbers here, as a test saw.
+                let rate = (u * u + w * w + self.sky.strength[star] / d2.sqrt()) / d2;
+                rates[lane] = if rate > rates[lane] { rate } else { rates[lane] };
             }
         }
         let mut fastest = 0.0f64;
         for lane in 0..LANES {
-            fastest = fastest.max(open[lane] * rates[lane]);
+            if fate[lane] == Fate::Open && rates[lane] > fastest {
+                fastest = rates[lane];
+            }
         }
         let mut ticks = TICKS;
         while ticks > 1 {
