@@ -82,7 +82,7 @@ const PRESETS: &[(&str, &[Preset])] = &[
         "engines",
         &[
             preset("hard discs and nearly hard ones", &[]),
-            preset("a hundred times as hard", &[("hardness", "1e6")]),
+            preset("a hundred times as hard", &[("hardness", "1000000")]),
             preset("steps that are too long", &[("steps_per_contact", "2"), ("hardness", "1000")]),
             preset("a thin gas", &[("packing_fraction", "0.02")]),
         ],
