@@ -2,6 +2,7 @@
 
 mod basins;
 mod conservation;
+mod displaced;
 mod dust;
 mod fate;
 mod line;

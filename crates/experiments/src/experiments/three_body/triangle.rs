@@ -1,19 +1,14 @@
 //! Lagrange's triangle: how long it holds together.
 
-use corpuscle_core::{Engine, Failure, Random, Vector};
+use corpuscle_core::{Failure, Random};
 use corpuscle_observe::chart::Axis;
 use corpuscle_observe::{Chart, Check, Estimate, Series, Style, fit};
 
-use super::failure;
-use super::start::{PRECISE, Start, rate_of_triangle};
-use crate::ensemble;
+use super::displaced::Displaced;
+use super::start::{Start, rate_of_triangle};
 
 /// Stream of the random displacements.
 const STREAM: u64 = 0x7a19;
-/// Replicas, each displaced at random.
-const REPLICAS: usize = 12;
-/// Displacement at the start: small enough to stay linear to the end, large against rounding.
-const DISPLACEMENT: f64 = 1e-13;
 /// Revolutions followed, and the number of looks in each.
 const REVOLUTIONS: usize = 5;
 const LOOKS: usize = 24;
@@ -35,27 +30,15 @@ pub(crate) fn growth_rate(masses: [f64; 3]) -> f64 {
 /// Triangles of the given masses, each displaced at random a little, followed for some revolutions.
 pub(crate) struct Triangle {
     masses: [f64; 3],
-    replicas: Vec<Replica>,
-}
-
-#[derive(Clone)]
-struct Replica {
-    start: Start,
-    /// Angular velocity of the triangle.
-    rate: f64,
-    random: Random,
-    /// Angle turned by and distance from the undisturbed triangle over the displacement.
-    deviation: Vec<(f64, f64)>,
+    replicas: Vec<Displaced>,
 }
 
 impl Triangle {
     pub(crate) fn measure(masses: [f64; 3], seed: u64) -> Result<Self, Failure> {
         let start = Start::lagrange(masses, 1.0, 0.0);
         let rate = rate_of_triangle(masses, 1.0, 0.0);
-        let mut replicas: Vec<Replica> = (0..REPLICAS as u64)
-            .map(|k| Replica { start: start.clone(), rate, random: Random::at(seed, STREAM, 0, k), deviation: vec![] })
-            .collect();
-        ensemble::for_each(&mut replicas, Replica::measure)?;
+        let angles: Vec<f64> = (1..=REVOLUTIONS * LOOKS).map(|look| look as f64 / LOOKS as f64 * std::f64::consts::TAU).collect();
+        let replicas = Displaced::follow(&start, rate, &angles, |k| Random::at(seed, STREAM, 0, k))?;
         Ok(Self { masses, replicas })
     }
 
@@ -107,15 +90,7 @@ impl Triangle {
         .noting("Stable if and only if (m1m2 + m2m3 + m3m1)/M² < 1/27: a stable one drifts, an unstable one grows exponentially.");
         for triangle in std::iter::once(self).chain(other) {
             let [a, b, c] = triangle.masses;
-            let count = triangle.replicas.first().map_or(0, |replica| replica.deviation.len());
-            let points: Vec<(f64, f64, f64)> = (0..count)
-                .map(|k| {
-                    let of_each: Vec<f64> = triangle.replicas.iter().map(|replica| libm::log(replica.deviation[k].1)).collect();
-                    let mean = Estimate::from_replicas(&of_each);
-                    let value = libm::exp(mean.mean);
-                    (triangle.replicas[0].deviation[k].0, value, value * mean.standard_error)
-                })
-                .collect();
+            let points = Displaced::mean(&triangle.replicas);
             let theory = growth_rate(triangle.masses);
             if let (Some(&(end, value, _)), true) = (points.last(), theory > WINS) {
                 let curve = points.iter().map(|p| (p.0, value * libm::exp(theory * (p.0 - end))));
@@ -135,23 +110,4 @@ impl Triangle {
 pub(crate) fn drift_bound(rate: f64, revolutions: f64) -> f64 {
     use std::f64::consts::{PI, TAU};
     3f64.sqrt() * (6.0 * PI * revolutions + 6.0) * libm::exp(rate * TAU * revolutions)
-}
-
-impl Replica {
-    fn measure(&mut self) -> Result<(), Failure> {
-        let exact = self.start.particles.position.clone();
-        let star = self.random.below(3) as usize;
-        let (sine, cosine) = libm::sincos(std::f64::consts::TAU * self.random.uniform());
-        self.start.particles.position[star] += Vector([cosine, sine]) * DISPLACEMENT;
-        let mut engine = self.start.engine(PRECISE).map_err(failure)?;
-        for look in 1..=REVOLUTIONS * LOOKS {
-            let angle = look as f64 / LOOKS as f64 * std::f64::consts::TAU;
-            engine.advance(angle / self.rate, &mut ())?;
-            let (sine, cosine) = libm::sincos(angle);
-            let turn = |r: Vector<2>| Vector([cosine * r[0] - sine * r[1], sine * r[0] + cosine * r[1]]);
-            let squares = engine.particles().position.iter().zip(&exact).map(|(r, &e)| (*r - turn(e)).norm_squared());
-            self.deviation.push((angle, squares.sum::<f64>().sqrt() / DISPLACEMENT));
-        }
-        Ok(())
-    }
 }
