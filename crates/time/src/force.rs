@@ -1,5 +1,6 @@
 //! Forces, one file each.
 
+mod bond;
 mod born_mayer;
 mod central;
 mod complementary_error;
@@ -8,6 +9,7 @@ mod drag;
 mod drive;
 mod ewald;
 mod exponential;
+mod fene;
 mod force_shifted;
 mod gravity;
 mod harmonic_repulsion;
@@ -22,12 +24,14 @@ mod uniform;
 mod wca;
 mod yukawa;
 
+pub use bond::{BondLaw, Bonds};
 pub use born_mayer::BornMayer;
 pub use central::CentralField;
 pub use coulomb::Coulomb;
 pub use drag::Drag;
 pub use drive::DrivingForce;
 pub use ewald::Ewald;
+pub use fene::FiniteExtension;
 pub use force_shifted::ForceShifted;
 pub use gravity::{Gravity, TreeGravity};
 pub use harmonic_repulsion::HarmonicRepulsion;
@@ -36,7 +40,7 @@ pub use lennard_jones::LennardJones;
 pub use morse::Morse;
 pub use pair::{PairForce, PairPotential};
 pub use spring::{Spring, Springs};
-pub use toda::TodaBonds;
+pub use toda::Toda;
 pub use uniform::UniformField;
 pub use wca::WeeksChandlerAndersen;
 pub use yukawa::Yukawa;
@@ -111,6 +115,11 @@ pub trait Force<const D: usize>: Send {
 
     /// The springs, where the force is springs and nothing else; only then can particles be moved while accelerations are found.
     fn springs(&self) -> Option<&Springs> {
+        None
+    }
+
+    /// What was wrong when accelerations were asked for last, said of a particle that has been lost by it: a bond that broke.
+    fn complaint(&self) -> Option<String> {
         None
     }
 

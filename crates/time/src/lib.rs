@@ -41,9 +41,9 @@ mod threads;
 pub use constraint::{Drive, Pin, Signal};
 pub use engine::TimeDriven;
 pub use force::{
-    BornMayer, CentralField, Coulomb, Drag, DrivingForce, Ewald, Force, ForceShifted, Gravity, HarmonicRepulsion, InversePower,
-    LennardJones, Morse, PairForce, PairPotential, Spring, Springs, Tensor, TodaBonds, TreeGravity, UniformField,
-    WeeksChandlerAndersen, Yukawa,
+    BondLaw, Bonds, BornMayer, CentralField, Coulomb, Drag, DrivingForce, Ewald, FiniteExtension, Force, ForceShifted, Gravity,
+    HarmonicRepulsion, InversePower, LennardJones, Morse, PairForce, PairPotential, Spring, Springs, Tensor, Toda, TreeGravity,
+    UniformField, WeeksChandlerAndersen, Yukawa,
 };
 pub use integrator::Integrator;
 pub use neighbours::Neighbours;

@@ -331,7 +331,8 @@ impl<const D: usize> System<D> {
     /// Whether all positions and velocities, those at `time`, are numbers.
     pub(crate) fn check(&mut self, time: f64) -> Result<(), Failure> {
         self.first_lost().map_or(Ok(()), |i| {
-            let cause = "position or velocity is no longer a number: a force overflowed; use a smaller dt".to_owned();
+            let overflow = || "position or velocity is no longer a number: a force overflowed".into();
+            let cause = self.forces.iter().find_map(|force| force.complaint()).unwrap_or_else(overflow) + "; use a smaller dt";
             Err(Failure { time, particle: Some(i), cause })
         })
     }

@@ -10,7 +10,7 @@ use corpuscle_checkpoint::{Resume, resume};
 use corpuscle_core::{Axis, Boundary, Engine, Failure, Invalid, Particles, Vector};
 use corpuscle_observe::{Chart, Check, Schedule};
 use corpuscle_scene::{Body, Camera, Colour, Colouring, Label, Line, Region, Scene};
-use corpuscle_time::{Force, Integrator, Pin, Spring, Springs, TimeDriven, TodaBonds};
+use corpuscle_time::{Bonds, Force, Integrator, Pin, Spring, Springs, TimeDriven, Toda};
 
 use crate::{Honesty, Settings, Simulation, Table, ensemble};
 use fput::Recurrence;
@@ -70,7 +70,8 @@ impl Row {
                 (0..last).map(|n| Spring { quadratic, ..Spring::new(n, n + 1, stiffness, spacing) }).collect(),
             )),
             Law::Toda(steepness) => {
-                Box::new(TodaBonds::new((0..last).map(|n| (n, n + 1)).collect(), stiffness, steepness, spacing))
+                let law = Toda { stiffness, steepness, rest_length: spacing };
+                Box::new(Bonds::new(law, (0..last).map(|n| (n, n + 1)).collect()))
             }
         };
         let space = Boundary::new([-spacing], [rest[last] + spacing], Axis::Open);
