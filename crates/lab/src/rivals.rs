@@ -77,8 +77,8 @@ fn of_hard(scenario: &Scenario, system: &System) -> Option<Rival> {
     let sigma = 2.0 * radius / 2f64.powf(1.0 / 6.0);
     // Two of them swing about each other with the frequency sqrt(2 k / m).
     let frequency = (2.0 * CURVATURE * epsilon / mass).sqrt() / sigma;
-    let forces = Forces { wca: Some(Contact { epsilon, sigma, cutoff: None }), ..Forces::default() };
-    let integrator = Stepper { name: "velocity-verlet".into(), time_step: Some(FINENESS / frequency) };
+    let forces = Forces { wca: Some(Contact { epsilon, sigma, ..Contact::default() }), ..Forces::default() };
+    let integrator = Stepper { name: "velocity-verlet".into(), time_step: Some(FINENESS / frequency), ..Stepper::default() };
     let soft = System { engine: EngineKind::Time, forces: Some(forces), integrator: Some(integrator), ..system.clone() };
     Some(rival(scenario, "steep-potential", soft))
 }

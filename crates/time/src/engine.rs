@@ -140,7 +140,12 @@ impl<const D: usize> TimeDriven<D> {
     /// What the equations of motion conserve: [`energy`](Self::energy) and, with a Nose-Hoover chain, what its links hold,
     /// `sum Q_k v_k^2/2 + f k T eta_1 + k T (eta_2 + ... + eta_M)`. Other thermostats exchange heat that is not counted.
     pub fn conserved_energy(&self) -> f64 {
-        self.energy() + self.stepper.energy()
+        self.energy() + self.bath_energy()
+    }
+
+    /// What the links of a Nose-Hoover chain hold; zero of all other integrators.
+    pub fn bath_energy(&self) -> f64 {
+        self.stepper.energy()
     }
 
     /// Total momentum.

@@ -1,21 +1,20 @@
 //! From the description of a free system to an engine, every number checked on the way.
 
+mod bonds;
 mod boundary;
+mod forces;
 mod imported;
 mod placement;
 mod rules;
+mod soft;
+mod stepper;
 
 use corpuscle_checkpoint::{Fault, Reader, Resume, Writer};
 use corpuscle_core::{Boundary, Engine, Failure, Invalid, Observer, Particles, Piston, Vector};
 use corpuscle_event::EventDriven;
-use corpuscle_time::{
-    Force, Gravity, Integrator, LennardJones, PairForce, Pin, Spring, Springs, TimeDriven, UniformField, WeeksChandlerAndersen,
-};
+use corpuscle_time::TimeDriven;
 
 use super::spec::{AxisName, EngineKind, System};
-
-/// Steps a scenario may ask for: more would never end.
-const MOST_STEPS: f64 = 1e12;
 
 /// One of the two engines, behind one name.
 pub(super) enum AnyEngine<const D: usize> {
@@ -78,6 +77,14 @@ impl<const D: usize> AnyEngine<D> {
             Self::Time(engine) => (engine.kinetic_energy(), engine.potential_energy()),
         }
     }
+
+    /// What a heat bath holds, of those that count it.
+    pub(super) fn bath_energy(&self) -> f64 {
+        match self {
+            Self::Event(_) => 0.0,
+            Self::Time(engine) => engine.bath_energy(),
+        }
+    }
 }
 
 impl<const D: usize> Resume for AnyEngine<D> {
@@ -108,6 +115,37 @@ pub(super) struct Built<const D: usize> {
     pub(super) trails: Vec<usize>,
     /// How many coordinates are held.
     pub(super) held: usize,
+    /// Velocities that move freely.
+    pub(super) degrees_of_freedom: usize,
+    /// Whether nothing takes up momentum: no wall, no field, nothing held.
+    pub(super) closed: bool,
+    /// What forces do to the energy; collisions have rules of their own.
+    pub(super) energy: EnergyLaw,
+    /// The heat bath.
+    pub(super) bath: Option<Bath>,
+    /// Ends of springs and other bonds.
+    pub(super) bonds: Vec<[usize; 2]>,
+}
+
+/// What forces do to the energy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum EnergyLaw {
+    /// It stays, a bath's own energy included.
+    Stays,
+    /// Friction takes some.
+    Falls,
+    /// A bath or a drive gives and takes some, which is not counted.
+    Free,
+}
+
+/// The heat bath of a soft system.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bath {
+    pub(super) temperature: f64,
+    /// Whether velocities are thermal: those of Brownian dynamics are a mean drift.
+    pub(super) thermal: bool,
+    /// Whether nothing else gives or takes heat.
+    pub(super) alone: bool,
 }
 
 /// Builds the engine.
@@ -127,12 +165,36 @@ pub(super) fn build<const D: usize>(system: &System, seed: u64) -> Result<Built<
     if particles.is_empty() {
         return Err(Invalid::new("particle", 0, "at least one particle, in [[particle]], [[species]] or [start]"));
     }
-    let held = pins.iter().flat_map(|pin| pin.axes).filter(|&held| held).count();
+    let held = pins.iter().flat_map(|pin| pin.axes).filter(|&held| held).count() + system.drives.len();
+    let still = !system.field.iter().any(|&g| g != 0.0) && held == 0;
+    let closed = boundary.conserves_momentum() && still && !soft::feels_the_outside(system);
+    let degrees_of_freedom = degrees_of_freedom(&particles, held, closed);
     let engine = match system.engine {
         EngineKind::Event => event_driven(system, boundary, particles, seed),
-        EngineKind::Time => time_driven(system, boundary, particles, pins),
+        EngineKind::Time => {
+            let kinds: Vec<&str> = names.iter().map(String::as_str).collect();
+            let context = soft::Context { seed, names: &kinds, degrees_of_freedom, closed };
+            soft::time_driven(system, boundary, particles, pins, &context)
+        }
     };
-    Ok(Built { engine: engine.map_err(|error| located(system, error))?, names, trails, held })
+    Ok(Built {
+        engine: engine.map_err(|error| located(system, error))?,
+        names,
+        trails,
+        held,
+        degrees_of_freedom,
+        closed,
+        energy: soft::energy_law(system),
+        bath: soft::bath(system),
+        bonds: bonds::all_ends(system),
+    })
+}
+
+/// Velocities that move freely.
+pub(super) fn degrees_of_freedom<const D: usize>(particles: &Particles<D>, held: usize, closed: bool) -> usize {
+    let massive = particles.mass.iter().filter(|&&mass| mass > 0.0).count();
+    let shared = if closed && massive > 1 { D } else { 0 };
+    (D * massive).saturating_sub(held + shared).max(1)
 }
 
 fn event_driven<const D: usize>(
@@ -142,8 +204,11 @@ fn event_driven<const D: usize>(
     seed: u64,
 ) -> Result<AnyEngine<D>, Invalid> {
     let refuse = |key: &str| Err(Invalid::new(key, "given", "nothing: the event-driven engine has none; choose engine = \"time\""));
-    if !system.springs.is_empty() {
-        return refuse("spring[0]");
+    if let Some(key) = bonds::first_key(system) {
+        return refuse(key);
+    }
+    if !system.drives.is_empty() {
+        return refuse("drive[0]");
     }
     if system.forces.is_some() {
         return refuse("forces");
@@ -164,106 +229,6 @@ fn event_driven<const D: usize>(
     Ok(AnyEngine::Event(Box::new(EventDriven::new(boundary, particles, rules::rules(system, seed)?)?)))
 }
 
-fn time_driven<const D: usize>(
-    system: &System,
-    boundary: Boundary<D>,
-    particles: Particles<D>,
-    pins: Vec<Pin<D>>,
-) -> Result<AnyEngine<D>, Invalid> {
-    if system.collisions.is_some() {
-        return Err(Invalid::new("collisions", "given", "nothing: the time-driven engine has none; choose engine = \"event\""));
-    }
-    let only_hard = [
-        ("partition[0]", !system.partitions.is_empty()),
-        ("face[0]", !system.walls.is_empty()),
-        ("obstacle[0]", !system.obstacles.is_empty()),
-        ("piston", system.piston.is_some()),
-    ];
-    if let Some((key, _)) = only_hard.into_iter().find(|(_, given)| *given) {
-        return Err(Invalid::new(key, "given", "nothing: the time-driven engine has none; choose engine = \"event\""));
-    }
-    let Some(stepper) = &system.integrator else {
-        return Err(Invalid::new("integrator", "missing", "name and time_step of an integrator, for engine = \"time\""));
-    };
-    let integrator = match (stepper.name.as_str(), stepper.time_step) {
-        ("gauss-radau-15", None) => Integrator::GaussRadau15 { tolerance: 1e-9, first_step: None },
-        ("dormand-prince-8", None) => Integrator::DormandPrince8 { tolerance: 1e-12, first_step: None },
-        (_, None) => return Err(Invalid::new("integrator.time_step", "missing", "a positive number")),
-        (name, Some(step)) => Integrator::from_name(name, step).map_err(|error| {
-            let key = if error.key == "integrator" { "integrator.name".into() } else { "integrator.time_step".to_string() };
-            Invalid { key, ..error }
-        })?,
-    };
-    if let Some(step) = integrator.dt()
-        && !(system.duration / MOST_STEPS..=system.duration).contains(&step)
-    {
-        let expected = format!("a number from {:e} to {}, the duration", system.duration / MOST_STEPS, system.duration);
-        return Err(Invalid::new("integrator.time_step", step, expected));
-    }
-    let mut forces: Vec<Box<dyn Force<D>>> = vec![];
-    if let Some(given) = &system.forces {
-        if let Some(gravity) = &given.gravity {
-            not_negative("forces.gravity.constant", gravity.constant)?;
-            not_negative("forces.gravity.softening", gravity.softening)?;
-            forces.push(Box::new(Gravity::new(gravity.constant, gravity.softening)));
-        }
-        if let Some(pair) = &given.lennard_jones {
-            let cutoff = pair.cutoff.unwrap_or(2.5);
-            positive("forces.lennard_jones.epsilon", pair.epsilon)?;
-            positive("forces.lennard_jones.sigma", pair.sigma)?;
-            positive("forces.lennard_jones.cutoff", cutoff)?;
-            forces.push(Box::new(PairForce::new(LennardJones {
-                epsilon: pair.epsilon,
-                sigma: pair.sigma,
-                cutoff: cutoff * pair.sigma,
-            })));
-        }
-        if let Some(pair) = &given.wca {
-            positive("forces.wca.epsilon", pair.epsilon)?;
-            positive("forces.wca.sigma", pair.sigma)?;
-            if let Some(cutoff) = pair.cutoff {
-                return Err(Invalid::new(
-                    "forces.wca.cutoff",
-                    cutoff,
-                    "nothing: this potential is cut at its minimum, 2^(1/6) sigma",
-                ));
-            }
-            forces.push(Box::new(PairForce::new(WeeksChandlerAndersen::new(pair.epsilon, pair.sigma))));
-        }
-    }
-    if !system.springs.is_empty() {
-        forces.push(Box::new(Springs::new(springs(system, particles.len())?)));
-    }
-    let uniform = field::<D>(system)?;
-    if uniform != Vector::ZERO {
-        forces.push(Box::new(UniformField::new(uniform)));
-    }
-    let engine = TimeDriven::new(boundary, particles, forces, integrator)?;
-    Ok(AnyEngine::Time(Box::new(if pins.is_empty() { engine } else { engine.with_pins(pins)? })))
-}
-
-fn springs(system: &System, particles: usize) -> Result<Vec<Spring>, Invalid> {
-    let mut springs = vec![];
-    for (index, bond) in system.springs.iter().enumerate() {
-        let key = |field: &str| format!("spring[{index}].{field}");
-        for (field, end) in [("first", bond.first), ("second", bond.second)] {
-            if end >= particles {
-                return Err(Invalid::new(key(field), end, format!("the index of a particle, 0 to {}", particles - 1)));
-            }
-        }
-        if bond.first == bond.second {
-            return Err(Invalid::new(key("second"), bond.second, "another particle than the first"));
-        }
-        not_negative(&key("stiffness"), bond.stiffness)?;
-        not_negative(&key("rest_length"), bond.rest_length)?;
-        not_negative(&key("damping"), bond.damping)?;
-        let mut spring = Spring::new(bond.first, bond.second, bond.stiffness, bond.rest_length);
-        spring.damping = bond.damping;
-        springs.push(spring);
-    }
-    Ok(springs)
-}
-
 fn field<const D: usize>(system: &System) -> Result<Vector<D>, Invalid> {
     if system.field.is_empty() { Ok(Vector::ZERO) } else { array("field", &system.field).map(Vector) }
 }
@@ -282,6 +247,10 @@ fn array<const D: usize>(key: &str, list: &[f64]) -> Result<[f64; D], Invalid> {
 
 fn positive(key: &str, value: f64) -> Result<(), Invalid> {
     if value > 0.0 && value.is_finite() { Ok(()) } else { Err(Invalid::new(key, value, "a positive number")) }
+}
+
+fn finite(key: &str, value: f64) -> Result<(), Invalid> {
+    if value.is_finite() { Ok(()) } else { Err(Invalid::new(key, value, "a finite number")) }
 }
 
 fn not_negative(key: &str, value: f64) -> Result<(), Invalid> {
@@ -323,15 +292,11 @@ fn located(system: &System, error: Invalid) -> Invalid {
             });
             return Invalid::new(key, range.unwrap_or(f64::NAN), expected);
         }
-        ["cutoff", "of", ..] => {
-            let long = system.forces.as_ref().is_some_and(|forces| forces.lennard_jones.is_some());
-            Some(if long { "forces.lennard_jones.cutoff" } else { "forces.wca.sigma" }.into())
-        }
-        ["rest", "length", "of", "spring", i] => Some(format!("spring[{i}].rest_length")),
         ["axis", _, "of", "the", "box"] => Some("box.faces".into()),
         ["uniform", "field", ..] => Some("field".into()),
         ["masses"] => Some("particle".into()),
-        ["integrator"] if Integrator::NAMES.contains(&error.value.as_str()) => Some("integrator.name".into()),
+        // What the engine says of the kind; what is missing or too much stands for itself.
+        ["integrator"] if !["missing", "given"].contains(&error.value.as_str()) => Some("integrator.name".into()),
         _ => None,
     };
     Invalid { key: key.unwrap_or(error.key), ..error }

@@ -59,7 +59,7 @@ impl<const D: usize> Free<D> {
                 let radius = |i: usize| if particles.radius[i] > 0.0 { particles.radius[i] } else { 0.005 * size };
                 drawing::add_particles(scene, engine.time(), particles, radius);
                 drawing::add_boundary(scene, engine.boundary(), engine.time());
-                for &[first, second] in &self.springs {
+                for &[first, second] in &self.bonds {
                     let from = particles.position[first];
                     let to = from + engine.boundary().displacement(from, particles.position[second]);
                     scene.lines.push(Line { from: from.to_three(), to: to.to_three(), width: 1.5, colour: Colour::Faint });

@@ -6,7 +6,7 @@ use corpuscle_event::Pair;
 use corpuscle_observe::{Chart, Check, Estimate, Histogram, RadialDistribution, Schedule, VirialPressure, WallPressure};
 use corpuscle_scene::Scene;
 
-use super::build::{AnyEngine, Built, build};
+use super::build::{AnyEngine, Bath, Built, EnergyLaw, build, degrees_of_freedom};
 use super::given::Given;
 use super::picture::Trail;
 use super::sample::Sample;
@@ -30,7 +30,8 @@ pub(super) struct Free<const D: usize> {
     pub(super) engine: AnyEngine<D>,
     pub(super) names: Vec<String>,
     pub(super) observe: Vec<Observable>,
-    pub(super) springs: Vec<[usize; 2]>,
+    /// Ends of springs and other bonds.
+    pub(super) bonds: Vec<[usize; 2]>,
     pub(super) trails: Vec<(usize, Trail<D>)>,
     pub(super) duration: f64,
     /// The time asked for last; a fixed step may end a little before.
@@ -62,12 +63,14 @@ pub(super) struct Free<const D: usize> {
     pub(super) degrees_of_freedom: usize,
     /// Whether collisions keep energy.
     pub(super) elastic: bool,
-    /// Whether forces keep energy.
-    pub(super) conservative: bool,
+    /// What forces do to the energy.
+    pub(super) energy_law: EnergyLaw,
+    /// The heat bath of soft particles.
+    pub(super) bath: Option<Bath>,
     /// Whether nothing takes up momentum: no wall, no field, nothing held.
     pub(super) closed: bool,
-    /// Uniform acceleration; empty for none.
-    field: Vec<f64>,
+    /// Whether a field makes some places denser than others.
+    layered: bool,
     /// How many coordinates are held.
     held: usize,
     /// When the system counts as in equilibrium: some time after the start, and after a hand has touched it.
@@ -78,7 +81,8 @@ pub(super) struct Free<const D: usize> {
 
 impl<const D: usize> Free<D> {
     pub(super) fn new(system: &System, seed: u64) -> Result<Self, Invalid> {
-        let Built { engine, names, trails, held } = build::<D>(system, seed)?;
+        let Built { engine, names, trails, held, degrees_of_freedom, closed, energy, bath, bonds } = build::<D>(system, seed)?;
+        observable(system, bath)?;
         let interval = sample_interval(system, &engine)?;
         let particles = engine.snapshot();
         let count = particles.len();
@@ -92,11 +96,6 @@ impl<const D: usize> Free<D> {
         } else {
             None
         };
-        let field = system.field.iter().any(|&g| g != 0.0);
-        let closed = boundary.conserves_momentum() && !field && held == 0;
-        let massive = particles.mass.iter().filter(|&&mass| mass > 0.0).count();
-        let shared = if closed && massive > 1 { D } else { 0 };
-        let degrees_of_freedom = (D * massive).saturating_sub(held + shared).max(1);
         let elastic = match &engine {
             AnyEngine::Event(engine) => engine.rules().restitution.is_elastic(),
             AnyEngine::Time(_) => true,
@@ -111,7 +110,7 @@ impl<const D: usize> Free<D> {
             engine,
             names,
             observe: system.observe.clone(),
-            springs: system.springs.iter().map(|bond| [bond.first, bond.second]).collect(),
+            bonds,
             trails: trails.into_iter().map(|i| (i, Trail::new())).collect(),
             duration: system.duration,
             reached: 0.0,
@@ -132,9 +131,10 @@ impl<const D: usize> Free<D> {
             start_particles: particles,
             degrees_of_freedom,
             elastic,
-            conservative: system.springs.iter().all(|bond| bond.damping == 0.0),
+            energy_law: energy,
+            bath,
+            layered: layered(system),
             closed,
-            field: system.field.clone(),
             held,
             settles_at: SETTLED * system.duration,
             tally: Tally::of(count),
@@ -164,9 +164,7 @@ impl<const D: usize> Free<D> {
         }
         if particles.len() != self.start_particles.len() {
             self.tally = Tally::of(particles.len());
-            let massive = particles.mass.iter().filter(|&&mass| mass > 0.0).count();
-            let shared = if self.closed && massive > 1 { D } else { 0 };
-            self.degrees_of_freedom = (D * massive).saturating_sub(self.held + shared).max(1);
+            self.degrees_of_freedom = degrees_of_freedom(&particles, self.held, self.closed);
         }
         self.closed &= self.engine.boundary().conserves_momentum();
         self.start_particles = particles;
@@ -205,7 +203,7 @@ impl<const D: usize> Free<D> {
 
     /// Whether nothing takes up angular momentum: no faces at all.
     pub(super) fn keeps_angular_momentum(&self) -> bool {
-        self.closed && self.conservative && self.engine.boundary().axes.iter().all(|&axis| axis == Axis::Open)
+        self.closed && self.energy_law == EnergyLaw::Stays && self.engine.boundary().axes.iter().all(|&axis| axis == Axis::Open)
     }
 
     pub(super) fn largest_radius(&self) -> f64 {
@@ -228,7 +226,7 @@ impl<const D: usize> Free<D> {
         let boundary = self.engine.boundary();
         let empty = boundary.partitions.is_empty() && boundary.obstacles.is_empty() && boundary.piston.is_none();
         let still = boundary.is_closed() && boundary.faces.iter().flatten().all(|face| face.motion.is_none());
-        self.field.iter().all(|&g| g == 0.0) && empty && still
+        !self.layered && empty && still
     }
 
     /// Whether no wall gives or takes energy, by its temperature or its motion.
@@ -241,6 +239,25 @@ impl<const D: usize> Free<D> {
     pub(super) fn keeps_temperature(&self) -> bool {
         matches!(&self.engine, AnyEngine::Event(engine) if engine.rules().pair == Pair::Hard) && self.elastic && self.isolated()
     }
+}
+
+/// Whether a field from outside makes some places denser than others.
+fn layered(system: &System) -> bool {
+    let central = system.forces.as_ref().is_some_and(|forces| forces.central.is_some());
+    central || system.field.iter().any(|&g| g != 0.0)
+}
+
+/// Velocities that are no velocities of heat have no temperature.
+fn observable(system: &System, bath: Option<Bath>) -> Result<(), Invalid> {
+    if bath.is_none_or(|bath| bath.thermal) {
+        return Ok(());
+    }
+    let asked = |wanted: Observable| system.observe.contains(&wanted);
+    let refused = |word: &str| Err(Invalid::new("observe", word, "other words: Brownian dynamics has no velocities of heat"));
+    if asked(Observable::Temperature) {
+        return refused("temperature");
+    }
+    if asked(Observable::Speeds) { refused("speeds") } else { Ok(()) }
 }
 
 fn sample_interval<const D: usize>(system: &System, engine: &AnyEngine<D>) -> Result<f64, Invalid> {
@@ -264,8 +281,8 @@ resume!(Free<const D> {
     ],
     parts: [engine],
     set_up: [
-        title, names, observe, springs, duration, structure_every, start, start_particles, degrees_of_freedom, elastic, conservative,
-        closed, field, held, settles_at, tally
+        title, names, observe, bonds, duration, structure_every, start, start_particles, degrees_of_freedom, elastic, energy_law,
+        bath, closed, layered, held, settles_at, tally
     ],
 });
 
@@ -333,8 +350,8 @@ impl<const D: usize> Simulation for Free<D> {
     fn act(&mut self, action: Action) -> Result<(), Invalid> {
         match &mut self.engine {
             AnyEngine::Event(engine) => hand::on_hard(engine, action)?,
-            AnyEngine::Time(_) if matches!(action, Action::Remove { .. }) && !self.springs.is_empty() => {
-                return action.refused("particles without springs, which would hang on nothing");
+            AnyEngine::Time(_) if matches!(action, Action::Remove { .. }) && !self.bonds.is_empty() => {
+                return action.refused("particles without bonds, which would hang on nothing");
             }
             AnyEngine::Time(engine) => hand::on_soft(engine, action)?,
         }

@@ -38,7 +38,7 @@ impl<const D: usize> Free<D> {
         let arms =
             particles.position.iter().zip(&particles.velocity).zip(&particles.mass).map(|((r, v), m)| m * r.norm() * v.norm());
         self.angular_momentum.see(particles.angular_momentum(), arms.sum());
-        let given = self.given.energy();
+        let given = self.given.energy() - self.engine.bath_energy();
         let energy = kinetic + potential - given;
         self.energy.see([energy], kinetic + potential.abs() + given.abs());
         self.motion.see([energy], kinetic);
@@ -80,7 +80,11 @@ impl<const D: usize> Free<D> {
     }
 
     /// Kinetic temperature of the motion relative to the centre of mass where that moves freely, of all motion elsewhere.
+    /// In Brownian dynamics, whose velocities are a mean drift, the bath's.
     fn temperature(&self, particles: &Particles<D>, kinetic: f64) -> f64 {
+        if let Some(bath) = self.bath.filter(|bath| !bath.thermal) {
+            return bath.temperature;
+        }
         let mass: f64 = particles.mass.iter().sum();
         let drift =
             if self.closed && particles.len() > 1 && mass > 0.0 { 0.5 * particles.momentum().norm_squared() / mass } else { 0.0 };

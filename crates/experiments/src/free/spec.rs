@@ -1,16 +1,22 @@
 //! The description of a free system, as a scenario file spells it.
 
+mod bonds;
+mod forces;
 mod start;
+mod stepper;
 mod walls;
 
 use std::fmt;
 use std::sync::Arc;
 
+pub use bonds::{Elastic, Exponential, Finite};
+pub use forces::{Between, Charges, Contact, Forces, Friction, Grain, Gravitation, PowerLaw, Push, Screened, Shaker, Trap, Valley};
 use schemars::JsonSchema;
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{self, IntoDeserializer, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 pub use start::{Imported, Start};
+pub use stepper::Stepper;
 pub use walls::{Cylinder, Grown, Peg, Side, Swing, Wall};
 
 /// A system of the user's own: box, particles, interactions, engine, and what to observe for how long.
@@ -59,14 +65,23 @@ pub struct System {
     pub particles: Vec<Single>,
     /// Springs between particles (time-driven engine).
     #[serde(default, rename = "spring", skip_serializing_if = "Vec::is_empty")]
-    pub springs: Vec<Bond>,
+    pub springs: Vec<Elastic>,
+    /// Bonds of polymers (time-driven engine).
+    #[serde(default, rename = "fene", skip_serializing_if = "Vec::is_empty")]
+    pub finite: Vec<Finite>,
+    /// Exponential springs (time-driven engine).
+    #[serde(default, rename = "toda", skip_serializing_if = "Vec::is_empty")]
+    pub exponential: Vec<Exponential>,
+    /// Coordinates moved as prescribed (time-driven engine).
+    #[serde(default, rename = "drive", skip_serializing_if = "Vec::is_empty")]
+    pub drives: Vec<Shaker>,
     /// Uniform acceleration of all particles; none when left out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub field: Vec<f64>,
     /// Rules of collision (event-driven engine).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub collisions: Option<Collisions>,
-    /// Forces between particles (time-driven engine).
+    /// Forces between particles and from outside (time-driven engine).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub forces: Option<Forces>,
     /// Integrator and its step (time-driven engine).
@@ -258,24 +273,6 @@ pub struct Single {
     pub trail: bool,
 }
 
-/// A spring between two particles.
-#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Bond {
-    /// Index of one end.
-    pub first: usize,
-    /// Index of the other.
-    pub second: usize,
-    /// Stiffness `kappa`.
-    pub stiffness: f64,
-    /// Length at rest.
-    #[serde(default)]
-    pub rest_length: f64,
-    /// Damping coefficient along the spring.
-    #[serde(default)]
-    pub damping: f64,
-}
-
 /// Rules of collision.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -325,59 +322,6 @@ pub struct Shoulder {
     pub range: f64,
     /// Energy a pair needs to enter.
     pub height: f64,
-}
-
-/// Forces between particles, each of all pairs.
-#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Forces {
-    /// Newton's gravity.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub gravity: Option<Gravitation>,
-    /// The Lennard-Jones potential, truncated and shifted.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub lennard_jones: Option<Contact>,
-    /// Its repulsive part (Weeks, Chandler, Andersen).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub wca: Option<Contact>,
-}
-
-/// Newton's gravity.
-#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Gravitation {
-    /// Constant of gravity.
-    #[serde(default = "one")]
-    pub constant: f64,
-    /// Plummer softening length.
-    #[serde(default)]
-    pub softening: f64,
-}
-
-/// A pair potential of energy scale `epsilon` and length scale `sigma`.
-#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Contact {
-    /// Depth.
-    #[serde(default = "one")]
-    pub epsilon: f64,
-    /// Diameter.
-    #[serde(default = "one")]
-    pub sigma: f64,
-    /// Cutoff in units of `sigma`; 2.5 when not given. The repulsive part has its own.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub cutoff: Option<f64>,
-}
-
-/// Integrator and its step.
-#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Stepper {
-    /// Name: one of `Integrator::NAMES`.
-    pub name: String,
-    /// Time step; the adaptive integrator takes none.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub time_step: Option<f64>,
 }
 
 /// What can be measured in a free system.

@@ -8,6 +8,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::Action;
 
+mod forces;
 mod laws;
 mod start;
 mod walls;
@@ -361,7 +362,7 @@ proptest! {
 
     #[test]
     fn no_numbers_make_a_start_panic(
-        base in prop::sample::select(vec![GAS, GAS_3, SOFT, NET]), changes in prop::collection::vec((0..29usize, number()), 1..4),
+        base in prop::sample::select(vec![GAS, GAS_3, SOFT, NET]), changes in prop::collection::vec((0..33usize, number()), 1..4),
         count in prop_oneof![4 => 1..80usize, 1 => any::<usize>()], lower in places(2), place in places(3), end: usize, seed: u64
     ) {
         let mut system = read(base);
@@ -408,8 +409,34 @@ proptest! {
                 25 => system.walls.push(spec::Wall { axis: spec::AxisName::Y, side: spec::Side::Lower, temperature: None, path: None, oscillation: Some(spec::Swing { centre: value, amplitude: lower[0], angular_frequency: lower[1], phase: value }), opened_at: Some(value) }),
                 26 => system.piston = Some(spec::Cylinder { axis: spec::AxisName::X, position: value, velocity: lower[0], mass: lower[1], force: value, stops: None }),
                 27 => system.collisions = Some(spec::Collisions { restitution: None, viscoelastic: Some(spec::Viscoelastic { stiffness: value, dissipation_time: lower[0] }), elastic_below: 0.0, well: Some(spec::Well { range: lower[1], depth: value }), shoulder: None }),
+                28 => {
+                    system.finite.push(spec::Finite { first: end, second: count, count, stiffness: value, longest: lower[0] });
+                    system.exponential.push(spec::Exponential { first: end, second: count, count, stiffness: value, steepness: lower[0], rest_length: lower[1] });
+                    system.drives.push(spec::Shaker { particle: end, axis: spec::AxisName::Y, amplitude: value, angular_frequency: lower[0], phase: value, ramp: lower[1] });
+                },
+                29 => if let Some(forces) = &mut system.forces {
+                    let charges = [("particles".to_owned(), value)].into();
+                    forces.coulomb = Some(spec::Charges { constant: lower[0], charges, accuracy: (seed % 2 == 0).then_some(value) });
+                    forces.yukawa = Some(spec::Screened { epsilon: value, sigma: lower[0], screening_length: lower[1], cutoff: value });
+                    forces.central = Some(spec::Trap { centre: lower.clone(), strength: value, power: lower[0] });
+                    forces.drag = Some(spec::Friction { rate: value });
+                },
+                30 => if let Some(forces) = &mut system.forces {
+                    forces.inverse_power = Some(spec::PowerLaw { epsilon: value, sigma: lower[0], exponent: end as u8, cutoff: Some(lower[1]) });
+                    forces.harmonic_repulsion = Some(spec::Grain { stiffness: value, diameter: lower[0] });
+                    forces.morse = Some(spec::Valley { epsilon: value, equilibrium: lower[0], steepness: lower[1], cutoff: None });
+                    forces.push.push(spec::Push { particle: end, direction: lower.clone(), amplitude: value, angular_frequency: lower[0], phase: value, ramp: lower[1] });
+                },
+                31 => if let Some(stepper) = &mut system.integrator {
+                    stepper.name = ["langevin", "brownian", "stochastic-rescaling", "nose-hoover"][end % 4].into();
+                    (stepper.temperature, stepper.friction, stepper.relaxation_time) = (Some(value), Some(lower[0]), Some(lower[1]));
+                    match end % 4 {
+                        0 | 1 => stepper.relaxation_time = None,
+                        _ => stepper.friction = None,
+                    }
+                },
                 _ => if let Some(forces) = &mut system.forces {
-                    let pair = spec::Contact { epsilon: value, sigma: lower[0], cutoff: Some(lower[1]) };
+                    let pair = spec::Contact { epsilon: value, sigma: lower[0], cutoff: Some(lower[1]), ..spec::Contact::default() };
                     forces.lennard_jones = Some(pair);
                 },
             }

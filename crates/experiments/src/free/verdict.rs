@@ -4,7 +4,7 @@ use corpuscle_core::particles::ball_volume;
 use corpuscle_core::{Axis as Faces, Engine, Vector};
 use corpuscle_observe::{Check, Estimate, blocking, theory};
 
-use super::build::AnyEngine;
+use super::build::{AnyEngine, EnergyLaw};
 use super::run::Free;
 use super::sample::Sample;
 use super::spec::Observable;
@@ -49,12 +49,13 @@ impl<const D: usize> Free<D> {
     pub(super) fn all_checks(&self) -> Vec<Check> {
         let mut checks = match &self.engine {
             AnyEngine::Event(_) => vec![self.energy_of_collisions()],
-            AnyEngine::Time(_) if self.conservative => vec![Check::at_most(
+            AnyEngine::Time(_) if self.energy_law == EnergyLaw::Stays => vec![Check::at_most(
                 "largest energy error, over the largest kinetic energy",
                 self.motion.relative(),
                 ENERGY_BOUND,
                 "forces with a potential conserve energy; a hundredth is what is allowed to the integrator",
             )],
+            AnyEngine::Time(_) if self.energy_law == EnergyLaw::Free => vec![],
             AnyEngine::Time(_) => vec![Check::at_most(
                 "largest rise of the energy, over the largest kinetic energy",
                 self.rise_over_motion(),
@@ -71,10 +72,19 @@ impl<const D: usize> Free<D> {
             ));
         }
         if self.done() {
+            checks.extend(self.equipartition());
             checks.extend(self.equation_of_state());
             checks.extend(self.virial_theorem());
         }
         checks
+    }
+
+    /// The kinetic temperature against that of the bath, where nothing else gives or takes heat.
+    fn equipartition(&self) -> Option<Check> {
+        let bath = self.bath.filter(|bath| bath.thermal && bath.alone)?;
+        let series: Vec<f64> = self.settled().iter().map(|sample| sample.temperature).collect();
+        let mean = blocking(&series);
+        mean.plateau.then(|| mean.estimate.check("kinetic temperature", bath.temperature, "equipartition, in a heat bath"))
     }
 
     fn rise_over_motion(&self) -> f64 {
@@ -177,7 +187,7 @@ impl<const D: usize> Free<D> {
             largest_overlap,
             energy_drift: match &self.engine {
                 AnyEngine::Event(_) => self.elastic.then(|| self.energy.relative()),
-                AnyEngine::Time(_) => self.conservative.then(|| self.motion.relative()),
+                AnyEngine::Time(_) => (self.energy_law == EnergyLaw::Stays).then(|| self.motion.relative()),
             },
             momentum_drift: self.closed.then(|| self.momentum.relative()),
             angular_momentum_drift: self.keeps_angular_momentum().then(|| self.angular_momentum.relative()),

@@ -116,13 +116,39 @@ impl Draft<'_> {
 
     fn soften(&mut self) {
         let name = one_of(self.random, &["velocity-verlet", "yoshida-4", "runge-kutta-4", "symplectic-euler", "yoshida-6"]);
-        self.add(&format!("[integrator]\nname = '{name}'\ntime_step = {TIME_STEP}"));
-        match self.random.below(4) {
+        let bath = match self.random.below(12) {
+            0 => Some("'langevin'\nfriction = 0.7"),
+            1 => Some("'brownian'\nfriction = 3.0"),
+            2 => Some("'stochastic-rescaling'\nrelaxation_time = 0.3"),
+            3 => Some("'nose-hoover'\nrelaxation_time = 0.3"),
+            _ => None,
+        };
+        let name = bath.map_or_else(|| format!("'{name}'"), |bath| format!("{bath}\ntemperature = 0.8"));
+        self.add(&format!("[integrator]\nname = {name}\ntime_step = {TIME_STEP}"));
+        let closed = self.faces.contains(&"periodic");
+        match self.random.below(9) {
             0 => self.add("[forces.lennard_jones]\nsigma = 0.8"),
-            1 if self.faces.iter().all(|&faces| faces != "periodic") => {
-                self.add("[forces.gravity]\nconstant = 0.3\nsoftening = 0.3");
-            }
+            1 => self.add("[forces.lennard_jones]\nsigma = 0.8\nforce_shifted = true\nbetween = [{ names = ['kind 0', 'kind 0'], sigma = 0.6 }]"),
+            2 => self.add("[forces.inverse_power]\nsigma = 0.8\nexponent = 9"),
+            3 => self.add("[forces.yukawa]\nsigma = 0.8\nscreening_length = 0.5\ncutoff = 2.8"),
+            4 => self.add("[forces.harmonic_repulsion]\nstiffness = 40.0\ndiameter = 0.9"),
+            5 => self.add("[forces.morse]\nequilibrium = 0.9\nsteepness = 4.0"),
+            6 => self.add("[forces.wca]\nsigma = 0.8\n[forces.coulomb]\naccuracy = 1e-5\ncharges = { 'kind 0' = 0.4 }"),
+            7 if !closed => self.add("[forces.gravity]\nconstant = 0.3\nsoftening = 0.3"),
             _ => self.add("[forces.wca]\nsigma = 0.8"),
+        }
+        if !closed && chance(self.random, 0.2) {
+            self.add(
+                "[forces.central]\ncentre = [2.0, 2.0, 2.0]\nstrength = 0.4"
+                    .replace(", 2.0]", if self.sides.len() == 2 { "]" } else { ", 2.0]" })
+                    .as_str(),
+            );
+        }
+        if chance(self.random, 0.1) {
+            self.add("[forces.drag]\nrate = 0.2");
+        }
+        if chance(self.random, 0.1) {
+            self.add("[[toda]]\nfirst = 0\nsecond = 1\nstiffness = 5.0\nsteepness = 0.5\nrest_length = 1.0");
         }
         if chance(self.random, 0.3) {
             self.add("[[spring]]\nfirst = 0\nsecond = 1\nstiffness = 20.0\nrest_length = 1.0");
