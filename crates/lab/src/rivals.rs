@@ -47,10 +47,11 @@ fn of_experiment(scenario: &Scenario) -> Vec<Rival> {
 }
 
 fn of_soft(scenario: &Scenario, system: &System) -> Vec<Rival> {
-    let Some(stepper) = &system.integrator else { return vec![] };
+    // In a heat bath none gives the same path, nor should it.
+    let Some(stepper) = system.integrator.as_ref().filter(|stepper| stepper.temperature.is_none()) else { return vec![] };
     let with = |name: &str| {
         let time_step = if name == "gauss-radau-15" { None } else { Some(stepper.time_step?) };
-        let integrator = Some(Stepper { name: name.to_owned(), time_step });
+        let integrator = Some(Stepper { name: name.to_owned(), time_step, ..Stepper::default() });
         Some(rival(scenario, name, System { integrator, ..system.clone() }))
     };
     INTEGRATORS.into_iter().filter(|name| *name != stepper.name).filter_map(with).collect()
