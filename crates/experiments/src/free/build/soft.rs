@@ -36,8 +36,8 @@ pub(super) fn time_driven<const D: usize>(
         return Err(Invalid::new(key, "given", "nothing: the time-driven engine has none; choose engine = \"event\""));
     }
     let integrator = stepper::integrator(system, context)?;
-    if matches!(integrator, Integrator::StochasticRescaling { .. } | Integrator::NoseHoover { .. }) && context.closed {
-        balanced(&particles)?;
+    if matches!(integrator, Integrator::StochasticRescaling { .. } | Integrator::NoseHoover { .. }) {
+        can_be_scaled(&particles, context.closed)?;
     }
     let mut all = forces::forces(system, &particles, context)?;
     all.extend(bonds::forces(system, particles.len())?);
@@ -55,15 +55,19 @@ pub(super) fn time_driven<const D: usize>(
     Ok(AnyEngine::Time(Box::new(if drives.is_empty() { engine } else { engine.with_drives(drives)? })))
 }
 
-/// A bath that scales all velocities would scale a motion of the whole, too.
-fn balanced<const D: usize>(particles: &Particles<D>) -> Result<(), Invalid> {
-    let momentum = particles.momentum().norm();
+/// A bath that scales all velocities moves nothing that is at rest, and would scale a motion of the whole, too.
+fn can_be_scaled<const D: usize>(particles: &Particles<D>, closed: bool) -> Result<(), Invalid> {
     let moving: f64 = particles.velocity.iter().zip(&particles.mass).map(|(v, m)| m * v.norm()).sum();
-    if momentum <= 1e-9 * moving {
-        return Ok(());
+    if moving == 0.0 {
+        let expected = "particles that move: this bath scales velocities, and cannot heat what is at rest";
+        return Err(Invalid::new("integrator.name", "a start at rest", expected));
     }
-    let expected = "velocities whose momenta add up to zero: this bath scales all of them, and would heat the motion of the whole";
-    Err(Invalid::new("integrator.name", format!("a total momentum of {momentum:e}"), expected))
+    let momentum = particles.momentum().norm();
+    if closed && momentum > 1e-9 * moving {
+        let expected = "momenta that add up to zero: this bath scales all velocities, and would heat the motion of the whole";
+        return Err(Invalid::new("integrator.name", format!("a total momentum of {momentum:e}"), expected));
+    }
+    Ok(())
 }
 
 fn prescribed<const D: usize>(index: usize, drive: &Shaker, engine: &TimeDriven<D>) -> Result<Drive, Invalid> {

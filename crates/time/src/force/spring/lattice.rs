@@ -11,13 +11,13 @@ use rayon::prelude::*;
 use super::Spring;
 use super::gather::{Add, Ahead, Gather, Move, Sink};
 use super::sweep::{Sweep, in_parts};
-use crate::constraint::{self, Held};
+use crate::constraint::Held;
 use crate::lanes;
 use crate::motion::{Moves, both};
 use crate::threads::{self, CHUNK};
 
 /// Particles handled together.
-const BLOCK: usize = 512;
+const BLOCK: usize = 256;
 /// Particles that must have the same neighbours, one after the other, in the mean.
 const REGULAR: usize = 16;
 /// The most springs at a particle: kernels are compiled for each number of them.
@@ -85,12 +85,12 @@ impl Lattice {
     pub(super) fn accelerate<const D: usize>(&self, particles: &Particles<D>, acceleration: &mut [Vector<D>]) {
         let Particles { position, mass, .. } = particles;
         let one = |(number, acceleration): (usize, &mut [Vector<D>])| {
-            let mut inverse_mass = InverseMass::<D>::new();
+            let (mut inverse_mass, mut first) = (InverseMass::<D>::new(), self.first_stretch(number * CHUNK));
             for (block, acceleration) in acceleration.chunks_mut(BLOCK).enumerate() {
                 let start = number * CHUNK + block * BLOCK;
                 let end = start + acceleration.len();
                 inverse_mass.see(&mass[start..end]);
-                for (piece, neighbours) in self.pieces(start..end) {
+                for (piece, neighbours) in self.pieces(start..end, &mut first) {
                     let of_piece = Vector::components_mut(&mut acceleration[piece.start - start..piece.end - start]);
                     let place = Place { position, own: piece.start, inverse_mass: inverse_mass.from(piece.start - start) };
                     self.gather(neighbours, place, Add(of_piece));
@@ -111,21 +111,29 @@ impl Lattice {
         in_parts(&sweep, position, velocity, BLOCK, self.reach)
     }
 
-    /// These particles in pieces whose neighbours are alike, none of which may be left out.
-    fn pieces(&self, particles: Range<usize>) -> impl Iterator<Item = (Range<usize>, &[Neighbour])> {
-        let first = self.stretches.partition_point(|stretch| stretch.particles.end <= particles.start);
-        let (mut start, mut stretches) = (particles.start, self.stretches[first..].iter().peekable());
+    /// The first stretch that ends behind this particle.
+    fn first_stretch(&self, particle: usize) -> usize {
+        self.stretches.partition_point(|stretch| stretch.particles.end <= particle)
+    }
+
+    /// These particles in pieces whose neighbours are alike, none of which may be left out. `first` is the
+    /// [`first_stretch`](Self::first_stretch) of the first of them, and becomes that of the next after the last.
+    fn pieces<'a>(
+        &'a self,
+        particles: Range<usize>,
+        first: &'a mut usize,
+    ) -> impl Iterator<Item = (Range<usize>, &'a [Neighbour])> {
+        let mut start = particles.start;
         std::iter::from_fn(move || {
             let alone = |end: usize| (start..end.min(particles.end), &[][..]);
-            let piece = match stretches.peek() {
+            let piece = match self.stretches.get(*first) {
                 _ if start >= particles.end => return None,
                 None => alone(particles.end),
                 Some(stretch) if start < stretch.particles.start => alone(stretch.particles.start),
                 Some(stretch) => {
                     let piece = start..stretch.particles.end.min(particles.end);
-                    let neighbours = &self.neighbours[stretch.neighbours.clone()];
-                    stretches.next();
-                    (piece, neighbours)
+                    *first += usize::from(piece.end == stretch.particles.end);
+                    (piece, &self.neighbours[stretch.neighbours.clone()])
                 }
             };
             start = piece.0.end;
@@ -240,7 +248,8 @@ impl<const D: usize> Sweep<D> for Gathering<'_> {
         // Places of the part that have come into the window, and all that have left it.
         let (mut seen, mut gone) = (0, 0);
         let (mut inverse_mass, mut finite) = (InverseMass::<D>::new(), [true; 2]);
-        let mut still = vec![];
+        let (mut still, mut stretch) = (vec![], lattice.first_stretch(from));
+        let mut held = &held[held.partition_point(|held| held.particle < from)..];
         for start in (0..count).step_by(BLOCK) {
             let end = (start + BLOCK).min(count);
             if window.len() > WINDOW + 2 * reach {
@@ -257,11 +266,12 @@ impl<const D: usize> Sweep<D> for Gathering<'_> {
                 }
             }
             inverse_mass.see(&mass[from + start..from + end]);
-            let among = constraint::among(held, from + start..from + end);
+            let (among, later) = held.split_at(held.iter().take_while(|held| held.particle < from + end).count());
+            held = later;
             still.extend(
                 among.iter().map(|held| (position[held.particle - from][held.axis], velocity[held.particle - from][held.axis])),
             );
-            for (piece, neighbours) in lattice.pieces(from + start..from + end) {
+            for (piece, neighbours) in lattice.pieces(from + start..from + end, &mut stretch) {
                 let (first, last) = (piece.start - from, piece.end - from);
                 let own = before.len() + first - gone;
                 let place = Place { position: &window, own, inverse_mass: inverse_mass.from(first - start) };
