@@ -3,6 +3,7 @@
 //!
 //! To add one, write the file and name it in [`REGISTRY`].
 
+pub mod deeds;
 mod drawing;
 mod ensemble;
 mod experiments;
@@ -18,6 +19,7 @@ pub mod simulation;
 mod study;
 mod tally;
 
+pub use deeds::{Deed, with_deeds};
 pub use frame::Frame;
 pub use parameter::{Kind, Parameter, Settings, Value};
 pub use simulation::{Action, Honesty, Simulation, Table};

@@ -4,6 +4,8 @@ use corpuscle_checkpoint::Resume;
 use corpuscle_core::{Failure, Invalid};
 use corpuscle_observe::{Chart, Check};
 use corpuscle_scene::Scene;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use crate::Frame;
 
@@ -79,7 +81,8 @@ pub trait Simulation: Send {
 
 /// What a person at the window may do to a running system, between two events. Bodies are known by their places in the scene's
 /// list; of vectors a flat system takes the first two components.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Action {
     /// Reverse all velocities.
     Reverse,
@@ -112,6 +115,7 @@ pub enum Action {
         /// Its coordinate along that axis.
         at: f64,
         /// Width of the hole.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
         hole: Option<f64>,
     },
     /// Take all plates out.
@@ -123,6 +127,7 @@ pub enum Action {
         /// Whether it is the upper of the two.
         upper: bool,
         /// Its temperature; none for a wall that only reflects.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
         temperature: Option<f64>,
     },
     /// Give the piston another velocity.

@@ -24,8 +24,9 @@ use std::io::Read;
 use std::path::Path;
 
 use corpuscle_core::Invalid;
-use corpuscle_experiments::{Experiment, Parameter, Settings, Simulation, Value, free};
+use corpuscle_experiments::{Action, Deed, Experiment, Parameter, Settings, Simulation, Value, free, with_deeds};
 use reader::{Reader, value_of};
+use serde::Serialize;
 use toml::de::DeTable;
 
 use crate::VERSION;
@@ -41,7 +42,7 @@ pub const DEFAULT_SEED: u64 = 1;
 const LONGEST_FILE: u64 = 16 << 20;
 
 /// The keys at the top of a file.
-const KEYS: [&str; 4] = ["experiment", "seed", "duration", "parameters"];
+const KEYS: [&str; 5] = ["experiment", "seed", "duration", "parameters", "deed"];
 
 /// What a scenario runs.
 #[derive(Clone)]
@@ -61,6 +62,8 @@ pub struct Scenario {
     pub settings: Settings,
     /// Physical time to stop at, where it differs from what the experiment needs and is not one of its parameters.
     pub duration: Option<f64>,
+    /// What is done to the system on the way, in the order of time.
+    pub deeds: Vec<Deed>,
     file: Origin,
     origins: BTreeMap<String, Origin>,
 }
@@ -72,7 +75,7 @@ impl Scenario {
     }
 
     fn of(subject: Subject, settings: Settings) -> Self {
-        Self { subject, settings, duration: None, file: Origin::default(), origins: BTreeMap::new() }
+        Self { subject, settings, duration: None, deeds: vec![], file: Origin::default(), origins: BTreeMap::new() }
     }
 
     /// Name of the experiment; `free` for a system of the file's own.
@@ -146,15 +149,22 @@ impl Scenario {
     /// [`Refusal`] when the text holds what cannot be used.
     pub fn parse(registry: Registry, text: &str, path: &Path) -> Result<Self, Refusal> {
         let reader = Reader { text, path };
-        let document = DeTable::parse(text).map_err(|error| {
+        let mut document = DeTable::parse(text).map_err(|error| {
             let place = error.span().map(|span| Place::of(text, span.start));
             let found = error.span().map_or_else(String::new, |span| reader.line(span.start));
             let invalid = Invalid::new("text", found, format!("TOML: {}", error.message().replace('\n', "; ")));
             Refusal::new(Origin::File(path.into(), place), invalid)
         })?;
+        let mut origins = BTreeMap::new();
+        let deeds = match document.get_mut().remove("deed") {
+            Some(deeds) => reader.deeds(deeds, &mut origins)?,
+            None => vec![],
+        };
         let keys = document.get_ref();
         if !keys.contains_key("experiment") && (keys.contains_key("engine") || keys.contains_key("box")) {
-            return reader.free_system(document);
+            let mut scenario = reader.free_system(document)?;
+            (scenario.deeds, scenario.origins) = (deeds, scenario.origins.into_iter().chain(origins).collect());
+            return Ok(scenario);
         }
         let document = document.get_ref();
         let name = document.get("experiment").ok_or_else(|| {
@@ -167,7 +177,7 @@ impl Scenario {
             let word = name.get_ref().as_str().unwrap_or_default();
             reader.refuse("experiment", name, one_of(word, registry.iter().map(|known| known.name)))
         })?;
-        let mut scenario = Self { file: Origin::File(path.into(), None), ..Self::new(experiment) };
+        let mut scenario = Self { file: Origin::File(path.into(), None), deeds, origins, ..Self::new(experiment) };
         for (key, value) in document {
             match key.get_ref().as_ref() {
                 "experiment" => {}
@@ -262,6 +272,10 @@ impl Scenario {
             Subject::Experiment(experiment) => (experiment.start)(&self.settings),
             Subject::Free(system) => free::start(system, self.settings.seed),
         };
+        let started = match self.deeds[..] {
+            [] => started,
+            _ => started.and_then(|simulation| with_deeds(simulation, self.deeds.clone())),
+        };
         started.map_err(|invalid| Refusal::new(self.origin(&invalid.key), invalid))
     }
 
@@ -290,15 +304,34 @@ impl Scenario {
     pub fn to_toml(&self) -> String {
         let head = format!("# Corpuscle {VERSION}. To run it again: corpuscle run scenario.toml\n");
         let seed = format!("seed = {}\n", self.settings.seed);
-        match &self.subject {
+        let subject = match &self.subject {
             // What was read from TOML can be written as TOML.
-            Subject::Free(system) => head + &seed + &toml::to_string(system.as_ref()).unwrap_or_default(),
+            Subject::Free(system) => seed + &toml::to_string(system.as_ref()).unwrap_or_default(),
             Subject::Experiment(experiment) => {
-                head + &format!("experiment = {}\n", toml_text(&Value::Word(experiment.name.into())))
-                    + &seed
-                    + &self.parameters_toml()
+                format!("experiment = {}\n", toml_text(&Value::Word(experiment.name.into()))) + &seed + &self.parameters_toml()
             }
+        };
+        head + &subject + &self.deeds_toml()
+    }
+
+    fn deeds_toml(&self) -> String {
+        #[derive(Serialize)]
+        struct Deeds<'a> {
+            deed: &'a [Deed],
         }
+        if self.deeds.is_empty() {
+            return String::new();
+        }
+        format!("\n{}", toml::to_string(&Deeds { deed: &self.deeds }).unwrap_or_default())
+    }
+
+    /// The scenario with more that was done, at the times given in their order: after what the file has for the same time.
+    #[must_use]
+    pub fn with_deeds(&self, more: &[(f64, Action)]) -> Self {
+        let mut scenario = self.clone();
+        scenario.deeds.extend(more.iter().map(|&(at, act)| Deed { at, act }));
+        scenario.deeds.sort_by(|one, other| one.at.total_cmp(&other.at));
+        scenario
     }
 
     fn parameters_toml(&self) -> String {

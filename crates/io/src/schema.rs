@@ -1,7 +1,7 @@
 //! JSON Schema (draft 2020-12) of scenario files: keys, types, ranges, defaults and what they mean, from the declarations that
 //! the reader itself goes by.
 
-use corpuscle_experiments::{Experiment, Kind, Parameter, free};
+use corpuscle_experiments::{Deed, Experiment, Kind, Parameter, free};
 use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};
 
@@ -15,10 +15,11 @@ pub fn all(registry: Registry) -> Value {
     let mut kinds: Vec<Value> = registry.iter().map(|known| experiment(known)).collect();
     let mut system = free();
     // References start at the root of the document.
+    // What a deed is stands among them, and serves the experiments, too.
     let definitions = system.as_object_mut().and_then(|system| system.remove("$defs")).unwrap_or_default();
     kinds.push(system);
     for kind in &mut kinds {
-        kind.as_object_mut().map(|kind| kind.remove("$schema"));
+        kind.as_object_mut().map(|kind| (kind.remove("$schema"), kind.remove("$defs")));
     }
     json!({ "$schema": DIALECT, "title": "Scenario of Corpuscle", "oneOf": kinds, "$defs": definitions })
 }
@@ -36,10 +37,23 @@ pub fn experiment(experiment: &Experiment) -> Value {
             "seed": seed(),
             "duration": { "description": "Physical time to run for.", "type": "number", "exclusiveMinimum": 0 },
             "parameters": { "type": "object", "properties": parameters, "additionalProperties": false },
+            "deed": deeds(),
         },
         "required": ["experiment"],
         "additionalProperties": false,
+        "$defs": definitions_of_deeds(),
     })
+}
+
+/// What is done on the way.
+fn deeds() -> Value {
+    json!({ "description": "What is done to the system, in the order of time.", "type": "array", "items": { "$ref": "#/$defs/Deed" } })
+}
+
+fn definitions_of_deeds() -> Value {
+    let generator = SchemaSettings::draft2020_12().into_generator();
+    let mut list = generator.into_root_schema_for::<Vec<Deed>>().to_value();
+    list.as_object_mut().and_then(|list| list.remove("$defs")).unwrap_or_default()
 }
 
 /// Files that describe a system of their own.
@@ -49,6 +63,10 @@ pub fn free() -> Value {
     // The reader takes the seed out before it looks at the system.
     if let Some(keys) = schema.get_mut("properties").and_then(Value::as_object_mut) {
         keys.insert("seed".into(), seed());
+        keys.insert("deed".into(), deeds());
+    }
+    if let (Some(known), Value::Object(more)) = (schema.get_mut("$defs").and_then(Value::as_object_mut), definitions_of_deeds()) {
+        known.extend(more);
     }
     schema
 }

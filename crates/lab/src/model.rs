@@ -73,8 +73,13 @@ pub enum Job {
     Write(PathBuf, Vec<u8>),
     /// Write what a part of the window shows to a file, as a picture.
     Picture(PathBuf, egui::Rect),
-    /// Record a film.
-    Film(Film),
+    /// Record a film of a scenario, given as the text of its file.
+    Film {
+        /// What of it, and where to.
+        film: Film,
+        /// The file.
+        scenario: String,
+    },
 }
 
 /// What a person is told at the foot of the window.

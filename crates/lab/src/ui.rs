@@ -100,7 +100,7 @@ pub fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot, previews: &Previews
         Overlay::None | Overlay::Gallery => {}
         Overlay::Help => help::show(ui, model),
         Overlay::Open => dialogs::open(ui, model),
-        Overlay::Save => dialogs::save(ui, model),
+        Overlay::Save => dialogs::save(ui, model, seen),
         Overlay::Record => dialogs::record(ui, model, seen),
     }
 }

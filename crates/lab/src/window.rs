@@ -180,7 +180,7 @@ impl Lab {
             match job {
                 Job::Write(path, bytes) => self.write(&path, &bytes),
                 Job::Picture(path, part) => self.ask_for_picture(context, path, part),
-                Job::Film(film) => match Recording::start(&film, &self.model.scenario.to_toml()) {
+                Job::Film { film, scenario } => match Recording::start(&film, &scenario) {
                     Ok(recording) => {
                         self.model.tell(self.model.language().fill(Text::Recording, &[&film.path]));
                         self.recording = Some(recording);

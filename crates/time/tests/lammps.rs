@@ -90,7 +90,7 @@ fn program() -> Option<String> {
 /// Kinetic and potential energy and pressure after each step, as LAMMPS finds them.
 fn lammps<const D: usize>(program: &str, fluid: &TimeDriven<D>, told: &Told) -> Vec<[f64; 3]> {
     let (particles, side) = (fluid.particles(), fluid.boundary().extent());
-    let bonded = |i: usize| told.chain.is_some_and(|beads| i % beads > 0);
+    let bonded = |i: usize| told.chain.is_some_and(|beads| !i.is_multiple_of(beads));
     let bonds = (0..particles.len()).filter(|&i| bonded(i)).count();
     let mut data = format!("start\n\n{} atoms\n1 atom types\n", particles.len());
     if bonds > 0 {
@@ -100,7 +100,8 @@ fn lammps<const D: usize>(program: &str, fluid: &TimeDriven<D>, told: &Told) -> 
         let (low, high) = if k < D { (0.0, side[k]) } else { (-0.5, 0.5) };
         writeln!(data, "{low:?} {high:?} {axis}lo {axis}hi").unwrap();
     }
-    data += &format!("\nMasses\n\n1 1.0\n\nAtoms # {}\n\n", if bonds > 0 { "bond" } else { "atomic" });
+    let style = if bonds > 0 { "bond" } else { "atomic" };
+    write!(data, "\nMasses\n\n1 1.0\n\nAtoms # {style}\n\n").unwrap();
     for (i, r) in particles.position.iter().enumerate() {
         let [x, y, z] = r.to_three();
         let molecule = told.chain.map_or(String::new(), |beads| format!("{} ", i / beads + 1));
@@ -117,7 +118,7 @@ fn lammps<const D: usize>(program: &str, fluid: &TimeDriven<D>, told: &Told) -> 
             writeln!(data, "{} 1 {i} {}", number + 1, i + 1).unwrap();
         }
     }
-    let (style, forces) = (if bonds > 0 { "bond" } else { "atomic" }, &told.forces);
+    let forces = &told.forces;
     let input = format!(
         "units lj\ndimension {D}\natom_style {style}\nread_data data.txt\n{forces}\
          neighbor 0.3 bin\nneigh_modify every 1 delay 0 check yes\nfix 1 all nve\ntimestep {DT}\n\

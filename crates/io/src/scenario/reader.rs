@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use corpuscle_core::Invalid;
-use corpuscle_experiments::{Settings, Value, free};
+use corpuscle_experiments::{Deed, Settings, Value, free};
 use serde::Deserialize;
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
@@ -30,16 +30,8 @@ impl Reader<'_> {
         }
         let mut origins = BTreeMap::new();
         self.collect("", document.get_ref(), &mut origins);
-        let system = free::System::deserialize(toml::de::Deserializer::from(document)).map_err(|error| {
-            let place = error.span().map(|span| Place::of(self.text, span.start));
-            let found = error.span().map_or_else(|| "(incomplete)".into(), |span| quoted(self.text, span));
-            let invalid = match unknown_word(error.message()) {
-                Some((true, word, known)) => Invalid::new(word, "(an unknown key)", one_of(word, known)),
-                Some((false, word, known)) => Invalid::new("system", found, one_of(word, known)),
-                None => Invalid::new("system", found, error.message().replace('\n', "; ")),
-            };
-            Refusal::new(Origin::File(self.path.into(), place), invalid)
-        })?;
+        let system =
+            free::System::deserialize(toml::de::Deserializer::from(document)).map_err(|error| self.refused("system", &error))?;
         let scenario = Scenario::of(Subject::Free(Box::new(system)), Settings::new(&[], seed));
         let mut scenario = Scenario { file: Origin::File(self.path.into(), None), origins, ..scenario };
         if let Subject::Free(system) = &mut scenario.subject
@@ -53,23 +45,44 @@ impl Reader<'_> {
         Ok(scenario)
     }
 
+    /// What is done to the system on the way.
+    pub(super) fn deeds(&self, value: Spanned<DeValue>, origins: &mut BTreeMap<String, Origin>) -> Result<Vec<Deed>, Refusal> {
+        self.collect_items("deed", value.get_ref(), origins);
+        origins.insert("deed".into(), self.origin(&value));
+        Vec::deserialize(toml::de::ValueDeserializer::from(value)).map_err(|error| self.refused("deed", &error))
+    }
+
+    /// What serde says against a file, with its place.
+    fn refused(&self, key: &str, error: &toml::de::Error) -> Refusal {
+        let place = error.span().map(|span| Place::of(self.text, span.start));
+        let found = error.span().map_or_else(|| "(incomplete)".into(), |span| quoted(self.text, span));
+        let invalid = match unknown_word(error.message()) {
+            Some((true, word, known)) => Invalid::new(word, "(an unknown key)", one_of(word, known)),
+            Some((false, word, known)) => Invalid::new(key, found, one_of(word, known)),
+            None => Invalid::new(key, found, error.message().replace('\n', "; ")),
+        };
+        Refusal::new(Origin::File(self.path.into(), place), invalid)
+    }
+
     /// Where the keys of a table and of the tables in it stand, as paths: `box.lower`, `species[0].radius`.
     fn collect(&self, prefix: &str, table: &DeTable, origins: &mut BTreeMap<String, Origin>) {
         for (key, value) in table {
             let path = format!("{prefix}{}", key.get_ref());
             match value.get_ref() {
                 DeValue::Table(inner) => self.collect(&format!("{path}."), inner, origins),
-                DeValue::Array(items) => {
-                    for (index, item) in items.iter().enumerate() {
-                        if let Some(inner) = item.get_ref().as_table() {
-                            self.collect(&format!("{path}[{index}]."), inner, origins);
-                            origins.insert(format!("{path}[{index}]"), self.origin(item));
-                        }
-                    }
-                }
-                _ => {}
+                list => self.collect_items(&path, list, origins),
             }
             origins.insert(path, self.origin(value));
+        }
+    }
+
+    /// Where the tables of a list and their keys stand.
+    fn collect_items(&self, path: &str, list: &DeValue, origins: &mut BTreeMap<String, Origin>) {
+        for (index, item) in list.as_array().into_iter().flatten().enumerate() {
+            if let Some(inner) = item.get_ref().as_table() {
+                self.collect(&format!("{path}[{index}]."), inner, origins);
+                origins.insert(format!("{path}[{index}]"), self.origin(item));
+            }
         }
     }
 

@@ -69,6 +69,43 @@ fn every_refusal_names_place_key_value_and_what_was_expected() {
     }
 }
 
+/// Deeds belong to files of both kinds, are written as they were read, and are refused where they stand.
+#[test]
+fn deeds_are_read_written_and_refused_in_their_place() {
+    const GAS: &str = "engine = 'event'\nduration = 2.0\n[box]\nlower = [0.0, 0.0]\nupper = [9.0, 9.0]\nfaces = 'walls'\n\
+                       [[species]]\ncount = 5\nradius = 0.3\n";
+    const DEEDS: &str = "[[deed]]\nat = 0.5\nact = 'reverse'\n[[deed]]\nat = 1.25\n[deed.act.throw]\nbody = 2\n\
+                         velocity = [0.1, -3.0, 0.0]\n";
+    let throw = Action::Throw { body: 2, velocity: [0.1, -3.0, 0.0] };
+    for head in [GAS, "experiment = \"oscillator\"\n[parameters]\nfrequency = 2.0\n"] {
+        let scenario = parse(&(head.to_owned() + DEEDS)).unwrap();
+        let expected = [Deed { at: 0.5, act: Action::Reverse }, Deed { at: 1.25, act: throw }];
+        assert_eq!(scenario.deeds, expected);
+        let again = parse(&scenario.to_toml()).unwrap();
+        assert_eq!((again.deeds, again.settings.seed), (expected.to_vec(), 1), "{}", scenario.to_toml());
+        // A hand at the same time comes after the file.
+        let more = parse(head).unwrap().with_deeds(&[(0.5, Action::Reverse)]).with_deeds(&[(0.5, throw), (0.25, throw)]);
+        assert_eq!(
+            more.deeds.iter().map(|deed| (deed.at, deed.act)).collect::<Vec<_>>(),
+            [(0.25, throw), (0.5, Action::Reverse), (0.5, throw)]
+        );
+    }
+    let line = GAS.lines().count() + 2;
+    for (deed, message) in [
+        ("at = 0.5\nact = 'revers'", format!(":{}:7: deed = 'revers': expected one of reverse, ", line + 1)),
+        ("at = 0.5\nact = 'reverse'\nhow = 1", format!(":{}:1: how = (an unknown key): expected one of at, act", line + 2)),
+        ("at = 'soon'\nact = 'reverse'", format!(":{line}:6: deed = 'soon': expected ")),
+        ("act = 'reverse'", format!(":{}:1: deed = [[deed]]: expected missing field `at`", line - 1)),
+        ("at = 0.5\nact = { throw = { body = -1, velocity = [0.0, 0.0, 0.0] } }", format!(":{}:", line + 1)),
+    ] {
+        let refusal = refused(&format!("{GAS}[[deed]]\n{deed}\n"));
+        assert!(refusal.contains(&message), "{deed}\ngave: {refusal}\nnot:  {message}");
+    }
+    let disorder = parse(&format!("{GAS}[[deed]]\nat = 1.0\nact = 'reverse'\n[[deed]]\nat = 0.5\nact = 'reverse'\n")).unwrap();
+    let refusal = disorder.start().err().unwrap().to_string();
+    assert!(refusal.contains(&format!(":{}:6: deed[1].at = 0.5: expected a time, 1 or later", line + 3)), "{refusal}");
+}
+
 #[test]
 fn an_impossible_combination_is_traced_back_to_its_line() {
     let scenario = parse("experiment = \"oscillator\"\n[parameters]\nfrequency = 1\n\namplitude = 1e4").unwrap();

@@ -18,13 +18,13 @@ pub(super) fn open(ui: &mut Ui, model: &mut Model) {
     });
 }
 
-pub(super) fn save(ui: &mut Ui, model: &mut Model) {
+pub(super) fn save(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
     framed(ui, model, Text::DoSave, |ui, model| {
         let colours = model.preferences.theme.colours();
         quiet(ui, &colours, model.text(Text::SaveHelp));
         if name(ui, model, Text::Save) {
             let path = model.typed.path.trim().to_owned();
-            let text = model.scenario.to_toml();
+            let text = model.scenario.with_deeds(&seen.deeds).to_toml();
             model.ask(Job::Write(path.into(), text.into_bytes()));
             model.overlay = Overlay::None;
         }
@@ -74,7 +74,8 @@ pub(super) fn record(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
             let mut film = model.typed.film.clone();
             // H.264 wants even sides.
             film.size = film.size.map(|side| side & !1);
-            model.ask(Job::Film(film));
+            let scenario = model.scenario.with_deeds(&seen.deeds).to_toml();
+            model.ask(Job::Film { film, scenario });
             model.overlay = Overlay::None;
         }
     });

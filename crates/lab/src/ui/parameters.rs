@@ -21,7 +21,7 @@ const NUMERICS: [&str; 10] =
 
 pub(super) fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
     let Subject::Experiment(experiment) = model.scenario.subject else {
-        free(ui, model);
+        free(ui, model, seen);
         return;
     };
     let colours = model.preferences.theme.colours();
@@ -115,7 +115,7 @@ fn beside(ui: &mut Ui, model: &mut Model) {
 }
 
 /// A system of a file's own has no declared parameters: the file is shown.
-fn free(ui: &mut Ui, model: &mut Model) {
+fn free(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
     let colours = model.preferences.theme.colours();
     section(ui, &colours, model.text(Text::OwnSystem));
     beside(ui, model);
@@ -123,7 +123,7 @@ fn free(ui: &mut Ui, model: &mut Model) {
     ui.add_space(6.0);
     ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         ui.set_max_width(ui.available_width() - 8.0);
-        ui.add(egui::Label::new(RichText::new(model.scenario.to_toml()).monospace().small()).wrap());
+        ui.add(egui::Label::new(RichText::new(model.scenario.with_deeds(&seen.deeds).to_toml()).monospace().small()).wrap());
     });
 }
 

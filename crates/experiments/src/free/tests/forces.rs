@@ -58,7 +58,7 @@ fn numbers_between_two_names_act_between_these() {
 /// A row of bonds is as many bonds written one by one.
 #[test]
 fn a_row_of_bonds_is_the_same_as_its_bonds() {
-    let beads: String = (0..6).map(|i| format!("[[particle]]\nposition = [{}.0, {}.0]\n", i, i % 2)).collect();
+    let beads = (0..6).map(|i| format!("[[particle]]\nposition = [{i}.0, {}.0]\n", i % 2)).collect::<Vec<_>>().concat();
     let text = format!(
         "engine = 'time'\nduration = 3.0\n[box]\nlower = [-9.0, -9.0]\nupper = [9.0, 9.0]\nfaces = 'open'\n{beads}{VERLET}"
     );
@@ -68,7 +68,7 @@ fn a_row_of_bonds_is_the_same_as_its_bonds() {
         "[[toda]]\nstiffness = 20.0\nsteepness = 1.5\nrest_length = 1.0\n",
     ] {
         let row = format!("{text}{law}first = 0\nsecond = 1\ncount = 5\n");
-        let each: String = (0..5).map(|i| format!("{law}first = {i}\nsecond = {}\n", i + 1)).collect();
+        let each = (0..5).map(|i| format!("{law}first = {i}\nsecond = {}\n", i + 1)).collect::<Vec<_>>().concat();
         let (row, each) = (run(&row, 1).unwrap(), run(&(text.clone() + &each), 1).unwrap());
         assert_eq!(fingerprint(&*row), fingerprint(&*each));
         assert!(check(&*row, "largest energy error").passed && check(&*row, "largest energy error").measured > 0.0);
