@@ -4,12 +4,15 @@
 
 use corpuscle_experiments::{REGISTRY, find};
 use corpuscle_io::Scenario;
+use corpuscle_lab::command::Command;
 use corpuscle_lab::language::{Language, Text};
-use corpuscle_lab::model::{Model, Overlay, Tab};
+use corpuscle_lab::model::{Job, Model, Overlay, Tab};
 use corpuscle_lab::previews::Previews;
 use corpuscle_lab::theme::Theme;
 use corpuscle_lab::{Order, Preferences, Runner, theme, ui};
+use corpuscle_scene::Scene;
 use egui::Key;
+use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
@@ -242,6 +245,27 @@ fn a_body_is_carried_and_thrown_with_the_pointer() {
     harness.state_mut().model.tab = Tab::Notebook;
     harness.run_steps(2);
     assert!(harness.query_all_by_label_contains("carried body 5").next().is_some());
+    what_is_saved_gives_the_same(&mut harness);
+}
+
+/// The file that the window saves runs to the same picture, with all that hands did.
+fn what_is_saved_gives_the_same(harness: &mut Harness<'static, Window>) {
+    let state = harness.state_mut();
+    state.model.obey(Command::Save, &state.runner.snapshot().clone());
+    harness.run_steps(3);
+    harness.get_by_role_and_label(Role::Button, Language::English.text(Text::Save)).click();
+    harness.run_steps(3);
+    let jobs = harness.state_mut().model.take_jobs();
+    let [Job::Write(path, bytes)] = &jobs[..] else { panic!("{jobs:?}") };
+    let scenario = Scenario::parse(REGISTRY, std::str::from_utf8(bytes).unwrap(), path).unwrap();
+    let snapshot = harness.state().runner.snapshot();
+    assert!(scenario.deeds.len() == snapshot.deeds.len() && !scenario.deeds.is_empty());
+    let mut simulation = scenario.start().unwrap();
+    simulation.advance(snapshot.time).unwrap();
+    let mut scene = Scene::default();
+    simulation.draw(&mut scene);
+    let places = |scene: &Scene| scene.bodies.iter().map(|body| (body.position, body.velocity)).collect::<Vec<_>>();
+    assert_eq!(places(&scene), places(&snapshot.scene));
 }
 
 #[test]
