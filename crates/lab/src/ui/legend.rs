@@ -14,6 +14,8 @@ use crate::theme::Theme;
 /// Height of the band, in points.
 pub(super) const HEIGHT: f32 = 34.0;
 const SIZE: f32 = 12.5;
+/// The same in two rows.
+const SMALL: f32 = 10.5;
 /// Longest scale bar.
 const BAR: f64 = 110.0;
 
@@ -55,19 +57,10 @@ fn choice(ui: &mut Ui, model: &mut Model, seen: &Snapshot, band: Rect) -> f32 {
 /// What the colours mean.
 fn paint(painter: &Painter, room: Rect, scene: &Scene, theme: Theme, language: Language) {
     let colours = theme.colours();
-    let mut left = room.left();
-    let y = room.center().y;
-    let word = |left: f32, text: &str, colour: Color32| -> f32 {
-        painter.text(pos2(left, y), Align2::LEFT_CENTER, text, FontId::proportional(SIZE), colour).right()
-    };
+    let (left, y) = (room.left(), room.center().y);
     match &scene.colouring {
         Colouring::Uniform(_) => {}
-        Colouring::Species(names) => {
-            for (index, name) in names.iter().enumerate() {
-                painter.circle_filled(pos2(left + 5.0, y), 5.0, theme.role(Colour::Accent(index as u8)));
-                left = word(left + 15.0, &language.phrase(name), colours.ink) + 12.0;
-            }
-        }
+        Colouring::Species(names) => kinds(painter, room, names, theme, language),
         Colouring::Speed { most, unit } => scale(painter, left, y, &language.phrase("speed"), unit, [0.0, *most], &colours),
         Colouring::Energy { most } => scale(painter, left, y, &language.phrase("kinetic energy"), "", [0.0, *most], &colours),
         Colouring::Height { least, most, .. } => {
@@ -76,6 +69,31 @@ fn paint(painter: &Painter, room: Rect, scene: &Scene, theme: Theme, language: L
         Colouring::Value { name, unit, least, most } => {
             scale(painter, left, y, &language.phrase(name), unit, [*least, *most], &colours);
         }
+    }
+}
+
+/// A dot and a name for each kind: in one row, or smaller in two where one is too short.
+fn kinds(painter: &Painter, room: Rect, names: &[String], theme: Theme, language: Language) {
+    let ink = theme.colours().ink;
+    let laid_out = |size: f32| -> Vec<_> {
+        let lay = |name: &String| painter.layout_no_wrap(language.phrase(name).into_owned(), FontId::proportional(size), ink);
+        names.iter().map(lay).collect()
+    };
+    // The dot, the name, and what is between this and the next.
+    let width = |name: &std::sync::Arc<egui::Galley>| 15.0 + name.size().x + 12.0;
+    let one = laid_out(SIZE);
+    let fits = one.iter().map(width).sum::<f32>() <= room.width() + 12.0;
+    let (entries, rows) = if fits { (one, 1) } else { (laid_out(SMALL), 2) };
+    let (mut row, mut left) = (0, room.left());
+    for (index, name) in entries.into_iter().enumerate() {
+        if row + 1 < rows && left > room.left() && left + width(&name) - 12.0 > room.right() {
+            (row, left) = (row + 1, room.left());
+        }
+        let y = room.top() + room.height() * (row as f32 + 0.5) / rows as f32;
+        painter.circle_filled(pos2(left + 5.0, y), if rows == 1 { 5.0 } else { 4.0 }, theme.role(Colour::Accent(index as u8)));
+        let next = left + width(&name);
+        painter.galley(pos2(left + 15.0, y - 0.5 * name.size().y), name, ink);
+        left = next;
     }
 }
 
