@@ -24,14 +24,14 @@ test: setup-test ## Every test: units, physics against theory, pictures, the com
 	@scripts/check-rooms.sh
 
 soak: ## An hour or so: 10^9 collisions, 10^8 contacts of grains, 10^5 periods of three bodies; nothing may drift, sink or stall
-	$(CARGO) test --release --locked -p corpuscle-event --test soak -- --ignored --nocapture --test-threads=1
-	$(CARGO) test --release --locked -p corpuscle-time --test soak -- --ignored --nocapture --test-threads=1
+	$(CARGO) test --release --locked -p corpuscle-event --test engine -- soak --ignored --nocapture --test-threads=1
+	$(CARGO) test --release --locked -p corpuscle-time --test engine -- soak --ignored --nocapture --test-threads=1
 
 kill: setup-test ## A quarter of an hour: 200 kills at random moments, each run resumed to the same bits
 	$(CARGO) test --release --locked -p corpuscle --test kill -- --ignored --nocapture
 
 fuzz: setup ## Ten minutes or so: strangers' files, read or refused; tens of thousands of random systems, all invariants on
-	FUZZ_FACTOR=30 $(CARGO) test --release --locked -p corpuscle-event --test invariants
+	FUZZ_FACTOR=30 $(CARGO) test --release --locked -p corpuscle-event --test engine invariants
 	FUZZ_CASES=100000 $(CARGO) test --release --locked -p corpuscle-io --test fuzz -- --nocapture
 	FUZZ_SYSTEMS=20000 $(CARGO) test --release --locked -p corpuscle-io --test systems -- --nocapture
 

@@ -1,6 +1,6 @@
 //! How fast the engine is, as a whole: `cargo bench -p corpuscle-event`. An item is a collision.
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/engine/common/mod.rs"]
 mod common;
 
 use common::{face_centred, periodic_fluid, run};

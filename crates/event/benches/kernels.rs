@@ -1,6 +1,6 @@
 //! What the parts of a step cost alone: `cargo bench -p corpuscle-event --bench kernels`. An item is one call.
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/engine/common/mod.rs"]
 mod common;
 
 use common::{face_centred, run};

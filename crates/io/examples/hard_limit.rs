@@ -1,6 +1,6 @@
 //! Remakes the charts of `docs/hard-limit.md`: `cargo run --release -p corpuscle-io --example hard_limit -- docs/pictures`.
 
-#[path = "../../time/tests/common/mod.rs"]
+#[path = "../../time/tests/engine/common/mod.rs"]
 mod common;
 
 use std::path::PathBuf;

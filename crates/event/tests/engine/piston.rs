@@ -1,10 +1,6 @@
 //! The massive piston against theory.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
-mod common;
-
-use common::{Record, assert_estimate, points};
+use crate::common::{Record, assert_estimate, points};
 use corpuscle_core::placement::{lattice, maxwell};
 use corpuscle_core::{Axis, Boundary, Engine, Meeting, Particles, Piston, Random, Vector};
 use corpuscle_event::{EventDriven, Rules};

@@ -1,7 +1,5 @@
 //! Thermostats: the whole canonical distribution, not its mean alone.
 
-#![allow(clippy::unwrap_used)] // helpers of tests are tests
-
 use corpuscle_core::{Axis, Boundary, Engine, Particles, Random, Vector};
 use corpuscle_time::{CentralField, Force, Integrator, Spring, Springs, TimeDriven};
 

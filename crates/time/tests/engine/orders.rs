@@ -1,7 +1,5 @@
 //! The order of every integrator, measured; and what symplectic and reversible mean, measured.
 
-#![allow(clippy::unwrap_used)] // helpers of tests are tests
-
 use corpuscle_core::{Axis, Boundary, Engine, Particles, Vector};
 use corpuscle_time::{Drag, Force, Gravity, Integrator, Spring, Springs, TimeDriven};
 

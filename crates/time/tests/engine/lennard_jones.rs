@@ -1,8 +1,6 @@
 //! Lennard-Jones against the NIST Standard Reference Simulation Website (doi:10.18434/T4M88Q): energies of a configuration, and
 //! averages at state points.
 
-#![allow(clippy::unwrap_used)] // helpers of tests are tests
-
 use std::f64::consts::PI;
 
 use corpuscle_core::{Axis, Boundary, Engine, Particles, Random, Vector, placement};

@@ -1,13 +1,9 @@
 //! Faces of the box that are warm, move or open, against theory.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
-mod common;
-
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
-use common::{Record, assert_estimate, assert_score, points};
+use crate::common::{Record, assert_estimate, assert_score, points};
 use corpuscle_core::placement::{lattice, maxwell};
 use corpuscle_core::{Axis, Boundary, Contact, Engine, Meeting, Motion, Observer, Particles, Partition, Random, Vector};
 use corpuscle_event::{EventDriven, Rules};

@@ -1,14 +1,10 @@
 //! Long runs: what a million contacts hide, a thousand million show. `make soak` runs them whole, `make test` a hundredth
 //! or a tenth of them.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
-mod common;
-
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use common::{face_centred, largest_overlap};
+use crate::common::{face_centred, largest_overlap};
 use corpuscle_core::placement::{lattice, maxwell};
 use corpuscle_core::{Axis, Boundary, Contact, Engine, Observer, Particles, Random, Vector};
 use corpuscle_event::{EventDriven, Restitution, Rules};

@@ -1,7 +1,5 @@
 //! The pressure tensor: the response of the energy to stretching along each axis, and how it turns with the system.
 
-#![allow(clippy::unwrap_used)] // helpers of tests are tests
-
 use corpuscle_core::{Axis, Boundary, Particles, Random, Vector};
 use corpuscle_time::{
     Coulomb, Ewald, Force, Gravity, Integrator, LennardJones, PairForce, Spring, Springs, Tensor, TimeDriven, UniformField,

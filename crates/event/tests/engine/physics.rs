@@ -1,12 +1,8 @@
 //! Against theory: equation of state, collision rate, free path, atmosphere, and the bounds on drift.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
-mod common;
-
 use std::ops::ControlFlow;
 
-use common::{Record, largest_overlap, periodic_fluid, run};
+use crate::common::{Record, largest_overlap, periodic_fluid, run};
 use corpuscle_core::placement::{lattice, maxwell};
 use corpuscle_core::{Axis, Boundary, Contact, Engine, Meeting, Observer, Particles, Partition, Random, Vector};
 use corpuscle_event::{EventDriven, Rules};
@@ -123,7 +119,7 @@ fn energy_stays_after_ten_million_collisions_of_discs() {
 
 #[test]
 fn energy_stays_after_a_million_collisions_of_dense_spheres() {
-    drifts_little(common::face_centred(5, 0.49, 5), 1_000_000);
+    drifts_little(crate::common::face_centred(5, 0.49, 5), 1_000_000);
 }
 
 /// In a column without a lid `n(h) ~ exp(-m g h / kT)`, so the mean of `m g h` is `kT`, whatever the number of particles

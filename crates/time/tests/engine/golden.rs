@@ -1,8 +1,6 @@
 //! Trajectories as fingerprints: the same bits on every machine, in debug and release, on any number of threads. A change of
 //! these numbers is a change of what the engine computes, and has to be meant.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
 use std::process::Command;
 
 use corpuscle_core::placement::{lattice, maxwell};
@@ -102,7 +100,7 @@ fn of_a_heat_bath() {
 fn whatever_the_instructions() {
     for instructions in ["plain", "avx2"] {
         let mut command = Command::new(std::env::current_exe().unwrap());
-        let output = command.arg("of_").env("CORPUSCLE_INSTRUCTIONS", instructions).output().unwrap();
+        let output = command.arg("golden::of_").env("CORPUSCLE_INSTRUCTIONS", instructions).output().unwrap();
         let words = String::from_utf8_lossy(&output.stdout);
         assert!(output.status.success() && words.contains(" passed") && !words.contains(" 0 passed"), "{instructions}: {words}");
     }

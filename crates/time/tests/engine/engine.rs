@@ -1,7 +1,5 @@
 //! The engine's contract: bits, walls, edits, refusals.
 
-#![allow(clippy::unwrap_used)] // helpers of tests are tests
-
 use std::ops::ControlFlow;
 
 use corpuscle_core::{Axis, Boundary, Contact, Engine, Meeting, Observer, Particles, Partition, Random, Vector};

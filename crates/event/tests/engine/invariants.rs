@@ -1,12 +1,8 @@
 //! What must hold for every system: random ones, in both dimensions and all kinds of boxes.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
-mod common;
-
 use std::ops::ControlFlow;
 
-use common::{Record, StopAfter, dense_system, largest_overlap, random_system, same_bits, system_of_sizes};
+use crate::common::{Record, StopAfter, dense_system, largest_overlap, random_system, same_bits, system_of_sizes};
 use corpuscle_core::{Axis, Boundary, Contact, Engine, Meeting, Observer, Particles, Vector};
 use corpuscle_event::{EventDriven, Rules};
 use proptest::prelude::*;
@@ -215,7 +211,7 @@ fn dense_systems_use_neighbour_lists() {
 /// Time is counted from a new epoch every 65536 contacts here: that depends on no stop either.
 #[test]
 fn stops_leave_no_trace_across_epochs() {
-    let mut once = common::periodic_fluid::<2>(64, 0.5, 9);
+    let mut once = crate::common::periodic_fluid::<2>(64, 0.5, 9);
     let mut often = once.clone();
     once.advance(600.0, &mut ()).unwrap();
     for step in 1..=6000 {
@@ -287,7 +283,7 @@ fn nonsense_is_refused_by_name() {
 
 #[test]
 fn a_shift_into_another_particle_is_refused_and_changes_nothing() {
-    let mut engine = common::periodic_fluid::<2>(16, 0.3, 1);
+    let mut engine = crate::common::periodic_fluid::<2>(16, 0.3, 1);
     engine.advance(1.0, &mut ()).unwrap();
     let before = engine.snapshot();
     let onto = engine.position(1) - engine.position(0);

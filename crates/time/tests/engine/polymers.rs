@@ -1,7 +1,5 @@
 //! Chains of beads: their bonds follow Boltzmann, and break with a word.
 
-#![allow(clippy::unwrap_used)] // helpers of tests are tests
-
 use corpuscle_core::{Axis, Boundary, Engine, Particles, Random, Vector};
 use corpuscle_observe::Estimate;
 use corpuscle_time::{

@@ -1,7 +1,5 @@
 //! Soft spheres: conservation, images, and independence of the neighbour lists over whole runs.
 
-#![allow(clippy::unwrap_used)] // helpers of tests are tests
-
 use corpuscle_core::{Axis, Boundary, Engine, Particles, Random, Vector, placement};
 use corpuscle_time::{Force, Gravity, Integrator, LennardJones, PairForce, Spring, Springs, TimeDriven, WeeksChandlerAndersen};
 use proptest::prelude::*;

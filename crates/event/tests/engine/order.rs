@@ -1,10 +1,6 @@
 //! The order in which particles are given is a matter of names: it changes no bit of what they do.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
-mod common;
-
-use common::{face_centred, periodic_fluid, run, same_bits};
+use crate::common::{face_centred, periodic_fluid, run, same_bits};
 use corpuscle_core::placement::maxwell;
 use corpuscle_core::{Boundary, Engine, Particles, Random, Vector};
 use corpuscle_event::{Counts, EventDriven, Rules};

@@ -1,13 +1,9 @@
 //! Fixed round obstacles against theory: scatterers, pegs, and an atmosphere between them.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
-mod common;
-
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
-use common::{assert_estimate, assert_score, points};
+use crate::common::{assert_estimate, assert_score, points};
 use corpuscle_core::{Axis, Boundary, Contact, Engine, Observer, Obstacle, Particles, Random, Vector};
 use corpuscle_event::{EventDriven, Rules};
 use corpuscle_observe::distribution::normal_score_of_chi_squared;

@@ -1,7 +1,5 @@
 //! Chains of springs: normal modes, pinned and driven ends.
 
-#![allow(clippy::unwrap_used)] // helpers of tests are tests
-
 use corpuscle_core::{Axis, Boundary, Engine, Particles, Vector};
 use corpuscle_time::{Drive, Integrator, Pin, Signal, Spring, Springs, TimeDriven};
 use std::f64::consts::PI;

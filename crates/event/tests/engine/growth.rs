@@ -1,7 +1,5 @@
 //! Spheres that grow: dense starts, reached without overlap.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
 use std::ops::ControlFlow;
 
 use corpuscle_core::particles::ball_volume;

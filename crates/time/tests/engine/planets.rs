@@ -1,7 +1,5 @@
 //! A star and its planets: the Wisdom-Holman map against what is known and against Gauss-Radau.
 
-#![allow(clippy::unwrap_used)] // helpers of tests are tests
-
 use corpuscle_core::{Axis, Boundary, Engine, Particles, Vector};
 use corpuscle_time::{Drag, Force, Gravity, Integrator, TimeDriven};
 

@@ -1,13 +1,9 @@
 //! Against kinetic theory: free paths, speeds and self-diffusion of gases in equilibrium.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
-mod common;
-
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
-use common::{assert_estimate, assert_score, periodic_fluid, run};
+use crate::common::{assert_estimate, assert_score, periodic_fluid, run};
 use corpuscle_core::{Contact, Engine, Meeting, Observer};
 use corpuscle_event::EventDriven;
 use corpuscle_observe::{Estimate, GoodnessOfFit, Histogram, SpeedDistribution, theory};

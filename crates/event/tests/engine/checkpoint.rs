@@ -1,11 +1,7 @@
 //! An engine that is written down, forgotten and taken up again, at any time and however often, does what the unbroken one
 //! does, to the last bit.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
-mod common;
-
-use common::{Record, dense_system, face_centred, periodic_fluid, random_system, same_bits, system_of_sizes};
+use crate::common::{Record, dense_system, face_centred, periodic_fluid, random_system, same_bits, system_of_sizes};
 use corpuscle_checkpoint::{Reader, Writer};
 use corpuscle_core::{Axis, Boundary, Contact, Engine, Meeting, Particles, Piston, Random, Vector};
 use corpuscle_event::{Counts, EventDriven, Pair, Rules};

@@ -1,16 +1,11 @@
 //! The engine against the plain one, on random systems: the same collisions in the same order, until rounding parts them.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on has failed")]
-
-mod common;
-mod reference;
-
 use std::ops::ControlFlow;
 
-use common::{dense_system, random_system, system_of_sizes};
+use crate::common::{dense_system, random_system, system_of_sizes};
+use crate::reference::{Event, Reference};
 use corpuscle_core::{Boundary, Contact, Engine, Meeting, Observer, Particles};
 use corpuscle_event::{EventDriven, Rules};
-use reference::{Event, Reference};
 
 type System<const D: usize> = (Boundary<D>, Particles<D>, Rules<D>);
 

@@ -1,8 +1,6 @@
 //! Trajectories as fingerprints: the same bits on every machine, in debug and release, with any vector instructions, however the
 //! run is cut up. A change of these numbers is a change of what the engine computes, and has to be meant.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
 use std::process::Command;
 
 use corpuscle_core::placement::{lattice, maxwell};
@@ -162,7 +160,7 @@ fn of_every_kind_of_box() {
 fn whatever_the_instructions() {
     for instructions in ["plain", "avx2"] {
         let mut command = Command::new(std::env::current_exe().unwrap());
-        let output = command.arg("of_").env("CORPUSCLE_INSTRUCTIONS", instructions).output().unwrap();
+        let output = command.arg("golden::of_").env("CORPUSCLE_INSTRUCTIONS", instructions).output().unwrap();
         let words = String::from_utf8_lossy(&output.stdout);
         assert!(output.status.success() && words.contains(" passed") && !words.contains(" 0 passed"), "{instructions}: {words}");
     }

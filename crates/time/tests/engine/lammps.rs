@@ -2,8 +2,6 @@
 //!
 //! Runs where LAMMPS is installed: the environment variable `LAMMPS` names the program, otherwise `lmp` is tried.
 
-#![allow(clippy::unwrap_used, clippy::panic)] // helpers of tests are tests
-
 use std::fmt::Write as _;
 use std::process::Command;
 

@@ -1,18 +1,13 @@
 //! Square wells and shoulders: against the plain engine, conservation, and the second virial coefficient.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on has failed")]
-
-mod common;
-mod reference;
-
 use std::ops::ControlFlow;
 
-use common::{largest_overlap, random_system, same_bits};
+use crate::common::{largest_overlap, random_system, same_bits};
+use crate::reference::{Event, Reference};
 use corpuscle_core::particles::ball_volume;
 use corpuscle_core::placement::{lattice, maxwell};
 use corpuscle_core::{Axis, Boundary, Contact, Engine, Meeting, Observer, Particles, Random, Vector};
 use corpuscle_event::{EventDriven, Pair, Restitution, Rules};
-use reference::{Event, Reference};
 
 /// The first contact, and no more.
 #[derive(Default)]

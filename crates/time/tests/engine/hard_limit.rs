@@ -1,8 +1,6 @@
 //! The hard limit: steep repulsion approaches the event-driven engine, which has no step to be too long.
 
-mod common;
-
-use common::{barker_henderson, extrapolate, hard_compressibility, missed, missed_by_events, soft_compressibility};
+use crate::common::{barker_henderson, extrapolate, hard_compressibility, missed, missed_by_events, soft_compressibility};
 
 /// `Z` of the fluid with `U = k T (s/r)^n` for growing `n`, extrapolated to `1/n = 0` by a parabola, against the event-driven engine
 /// at the same number of particles; and each against hard spheres of Barker and Henderson's diameter.

@@ -1,7 +1,5 @@
 //! An engine that is written down, set up again and put where it was does what the unbroken one does, to the last bit.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
 use std::f64::consts::TAU;
 
 use corpuscle_checkpoint::{Fault, Reader, Resume, Writer};
