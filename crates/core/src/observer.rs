@@ -97,7 +97,7 @@ pub trait Observer<const D: usize> {
 
 impl<const D: usize> Observer<D> for () {}
 
-impl<const D: usize, O: Observer<D>> Observer<D> for &mut O {
+impl<const D: usize, O: Observer<D> + ?Sized> Observer<D> for &mut O {
     fn begin(&mut self, time: f64, particles: &Particles<D>) {
         (**self).begin(time, particles);
     }

@@ -32,10 +32,11 @@ impl<const D: usize> AnyEngine<D> {
         }
     }
 
-    pub(super) fn advance(&mut self, to: f64, observer: &mut impl Observer<D>) -> Result<(), Failure> {
+    /// Whoever looks on: the engines' loops are compiled anew for every type of observer they meet.
+    pub(super) fn advance(&mut self, to: f64, mut observer: &mut dyn Observer<D>) -> Result<(), Failure> {
         match self {
-            Self::Event(engine) => engine.advance(to, observer),
-            Self::Time(engine) => engine.advance(to, observer),
+            Self::Event(engine) => engine.advance(to, &mut observer),
+            Self::Time(engine) => engine.advance(to, &mut observer),
         }
     }
 
