@@ -229,7 +229,7 @@ impl Simulation for Nonlinear {
         let engine = &self.rows[0].engine;
         let mut frame = Frame::new(engine.time(), engine.boundary(), engine.particles(), &["masses".into(), "walls".into()]);
         let last = frame.particles.len() - 1;
-        [0, last].into_iter().for_each(|wall| frame.particles.species[wall] = 1);
+        (frame.particles.species[0], frame.particles.species[last]) = (1, 1);
         Some(frame)
     }
 
