@@ -11,7 +11,7 @@ use std::time::Duration;
 use corpuscle_core::Invalid;
 
 /// Longest scenario read, in bytes: far more than any list of particles written by hand.
-const LONGEST: u64 = 16 << 20;
+pub(super) const LONGEST: u64 = 16 << 20;
 /// So long may a pipe with a name take, from opening it to its end.
 const PATIENCE: Duration = Duration::from_secs(10);
 
