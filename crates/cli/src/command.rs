@@ -22,7 +22,7 @@ use crate::memory;
 /// What to run, and how it differs from its defaults.
 #[derive(Args)]
 pub(crate) struct Subject {
-    /// Name of an experiment, or a scenario file.
+    /// Name of an experiment, or a scenario file; `-` reads one from standard input.
     #[arg(value_name = "NAME|FILE")]
     name: String,
     /// Set a parameter; may be given several times.

@@ -11,6 +11,9 @@ use crate::signal::Stop;
 /// Parts the bar is divided into.
 const PARTS: f64 = 10_000.0;
 
+/// The first slice is so small a part of the way that a signal is heard soon and a checkpoint written in time, however long the way.
+const FIRST: f64 = 1e-9;
+
 /// Drives a simulation through physical time. The slices adapt to the clock, which the simulation does not notice: where
 /// a caller stops has no influence on what it computes.
 pub(crate) struct Progress {
@@ -31,7 +34,7 @@ impl Progress {
         // The template is a constant that every test of the command shows to be right.
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         let start = simulation.time();
-        Self { bar, start, end, now: start, slice: (end - start) / 1000.0, wall: Duration::ZERO, stop }
+        Self { bar, start, end, now: start, slice: FIRST * (end - start), wall: Duration::ZERO, stop }
     }
 
     /// Advances to the physical time `to`; false when a signal came before it was reached.

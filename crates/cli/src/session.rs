@@ -1,5 +1,7 @@
 //! A run on its way: advanced, pictured, kept in checkpoints, and written down.
 
+use std::fs;
+use std::path::Path;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
@@ -24,6 +26,8 @@ use crate::verdict::{checks, verdict};
 const SIZE: Size = Size { width: 1120, height: 720 };
 /// They are shown at about half that width.
 const SCALE: f32 = 1.6;
+/// Bytes of a picture at most: those of its pixels.
+const LARGEST: u64 = 4 * SIZE.width as u64 * SIZE.height as u64;
 /// Looks at the system between start and end, for the trails.
 const LOOKS: u32 = 600;
 
@@ -99,8 +103,7 @@ impl Session {
         let trajectory = run.trajectory.map(|kept| Trajectory::again(folder.path(), kept)).transpose();
         let trajectory = trajectory.map_err(|invalid| Refusal::new(Origin::Unknown, invalid))?;
         let of_file = |(index, (time, caption)): (usize, (f64, String))| {
-            let png = std::fs::read(folder.path().join(file_of_picture(index))).ok()?;
-            Some(Picture { time, caption, png })
+            Some(Picture { time, caption, png: picture(&folder.path().join(file_of_picture(index)))? })
         };
         let pictures = run.pictures.into_iter().enumerate().filter_map(of_file).collect();
         let wall = Duration::try_from_secs_f64(run.wall).unwrap_or_default();
@@ -286,6 +289,14 @@ fn artist() -> Option<Artist> {
 
 fn file_of_picture(index: usize) -> String {
     format!("pictures/{:02}.png", index + 1)
+}
+
+/// A picture that was taken before. In a stranger's folder anything may have its name, a link to a private file as well, which
+/// the report would take in.
+fn picture(path: &Path) -> Option<Vec<u8>> {
+    let there = fs::symlink_metadata(path).ok()?;
+    let png = (there.is_file() && there.len() <= LARGEST).then(|| fs::read(path))?.ok()?;
+    png.starts_with(b"\x89PNG\r\n").then_some(png)
 }
 
 /// Writes everything down, the report last: where there is a report, there is all the rest.

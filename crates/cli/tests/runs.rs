@@ -49,6 +49,23 @@ fn every_experiment_is_listed_and_its_defaults_are_valid() {
 }
 
 #[test]
+fn check_tells_what_a_file_would_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "engine = \"event\"\nduration = 60.0\n[box]\nlower = [0.0, 0.0]\nupper = [40.0, 40.0]\nfaces = \"walls\"\n\
+                [[species]]\ncount = 500\nradius = 0.5\n";
+    fs::write(folder.path().join("discs.toml"), text).unwrap();
+    let told = String::from_utf8(corpuscle(folder.path(), &["check", "discs.toml"]).stdout).unwrap();
+    for line in [
+        "engine      event-driven",
+        "particles   500, which fill 0.245 of the box",
+        "memory      about 101 MB",
+        "time        about ",
+    ] {
+        assert!(told.contains(line), "{told}");
+    }
+}
+
+#[test]
 fn a_run_leaves_a_report_and_is_repeated_by_its_scenario() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("gas.toml"), GAS).unwrap();

@@ -45,11 +45,20 @@ pub struct Invalid {
     pub expected: String,
 }
 
+/// Digits a number is quoted with, beyond which it is written with its power of ten.
+const LONGEST_NUMBER: usize = 30;
+
 impl Invalid {
     /// `key` was `value`, but `expected` was needed.
     #[allow(clippy::needless_pass_by_value)] // numbers are passed as they are, at a dozen places
     pub fn new(key: impl Into<String>, value: impl ToString, expected: impl Into<String>) -> Self {
-        Self { key: key.into(), value: value.to_string(), expected: expected.into() }
+        let value = value.to_string();
+        // Rust writes all three hundred digits of a large number.
+        let value = match value.parse::<f64>() {
+            Ok(number) if value.len() > LONGEST_NUMBER => format!("{number:?}"),
+            _ => value,
+        };
+        Self { key: key.into(), value, expected: expected.into() }
     }
 }
 

@@ -55,7 +55,12 @@ pub fn lattice<const D: usize>(
         }
         spacing = (spacing * 0.99).max(2.0 * radius);
     }
-    Err(Invalid::new("particles", count, format!("at most about {most} of radius {radius}: the box is too small for more")))
+    let expected = if most < count as f64 {
+        format!("at most about {most:?} of radius {radius:?}: the box is too small for more")
+    } else {
+        "fewer, or another box: this one is too long and thin for so many, or too full of other things".into()
+    };
+    Err(Invalid::new("particles", count, expected))
 }
 
 fn lattice_sites<const D: usize>(boundary: &Boundary<D>, room: Vector<D>, radius: f64, sides: [usize; D]) -> Vec<Vector<D>> {
@@ -128,6 +133,14 @@ mod tests {
         let room = Boundary::<2>::new([0.0; 2], [10.0; 2], Axis::Walls);
         let error = lattice(&room, 101, 0.5, &mut Random::new(1, 0), |_| true).unwrap_err();
         assert!(error.expected.contains("100"), "{error}");
+    }
+
+    /// It once said that more would fit than were asked for.
+    #[test]
+    fn a_box_too_thin_for_a_lattice_is_not_called_too_small() {
+        let room = Boundary::<2>::new([0.0; 2], [1e300, 40.0], Axis::Walls);
+        let error = lattice(&room, 200, 0.5, &mut Random::new(1, 0), |_| true).unwrap_err();
+        assert!(error.expected.contains("long and thin"), "{error}");
     }
 
     #[test]

@@ -109,6 +109,10 @@ impl Checkpoint {
     /// # Errors
     /// When it is no checkpoint, or one that cannot be used.
     pub fn read(path: &Path) -> Result<Self, CheckpointError> {
+        // Asked before it is opened: opening a pipe may take for ever.
+        if !fs::metadata(path)?.is_file() {
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is no file").into());
+        }
         let mut file = File::open(path)?;
         let length = file.metadata()?.len();
         let mut head = [0; HEAD];

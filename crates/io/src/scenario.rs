@@ -15,12 +15,11 @@
 //! Every key is known, typed and ranged; what is not is refused with its line and column, and a near miss is named.
 
 mod reader;
+mod source;
 mod start;
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
 use corpuscle_core::Invalid;
@@ -31,6 +30,7 @@ use toml::de::DeTable;
 
 use crate::VERSION;
 use crate::refusal::{Origin, Place, Refusal, one_of};
+use crate::trajectory::START;
 
 /// The experiments a scenario can name.
 pub type Registry<'a> = &'a [&'static Experiment];
@@ -38,8 +38,8 @@ pub type Registry<'a> = &'a [&'static Experiment];
 /// Seed of a run that asks for none: fixed, so that the same command gives the same result.
 pub const DEFAULT_SEED: u64 = 1;
 
-/// Longest scenario file read, in bytes: far more than any list of particles written by hand.
-const LONGEST_FILE: u64 = 16 << 20;
+/// The word for standard input, and how messages call it.
+const STANDARD_INPUT: (&str, &str) = ("-", "standard input");
 
 /// The keys at the top of a file.
 const KEYS: [&str; 5] = ["experiment", "seed", "duration", "parameters", "deed"];
@@ -102,13 +102,19 @@ impl Scenario {
         }
     }
 
-    /// What a word on the command line means: the name of an experiment, or else a scenario file.
+    /// What a word on the command line means: the name of an experiment, `-` for standard input, or else a scenario file.
     ///
     /// # Errors
     /// [`Refusal`] when it is neither, or the file cannot be used.
     pub fn find(registry: Registry, word: &str) -> Result<Self, Refusal> {
         if let Some(experiment) = registry.iter().find(|experiment| experiment.name == word) {
             return Ok(Self::new(experiment));
+        }
+        if word == STANDARD_INPUT.0 {
+            let path = Path::new(STANDARD_INPUT.1);
+            let text = source::read_standard_input();
+            let text = text.map_err(|invalid| Refusal::new(Origin::File(path.into(), None), invalid))?;
+            return Self::parse(registry, &text, path);
         }
         let path = Path::new(word);
         let looks_like_a_file = word.contains(['/', '\\']) || path.extension().is_some() || path.exists();
@@ -119,27 +125,12 @@ impl Scenario {
         Err(Refusal::new(Origin::CommandLine, Invalid::new("experiment", word, expected)))
     }
 
-    /// Reads a scenario file.
+    /// Reads a scenario file, or a pipe that somebody writes into.
     ///
     /// # Errors
-    /// [`Refusal`] when it cannot be read, or holds what cannot be used.
+    /// [`Refusal`] when it cannot be read, takes too long, or holds what cannot be used.
     pub fn read(registry: Registry, path: &Path) -> Result<Self, Refusal> {
-        let origin = Origin::File(path.into(), None);
-        let refuse = |value: String, expected: &str| Refusal::new(origin.clone(), Invalid::new("file", value, expected));
-        let unreadable = |error: std::io::Error| refuse(error.to_string(), "a scenario file that can be read");
-        let file = File::open(path).map_err(unreadable)?;
-        if file.metadata().map_err(unreadable)?.is_dir() {
-            return Err(refuse("a folder".into(), "a scenario file"));
-        }
-        let mut bytes = vec![];
-        file.take(LONGEST_FILE + 1).read_to_end(&mut bytes).map_err(unreadable)?;
-        if bytes.len() as u64 > LONGEST_FILE {
-            return Err(refuse(format!("more than {LONGEST_FILE} bytes"), "a scenario file of at most 16 MiB"));
-        }
-        let text = String::from_utf8(bytes).map_err(|error| {
-            let byte = error.utf8_error().valid_up_to();
-            refuse(format!("byte {byte} is not UTF-8"), "a scenario file, which is text in UTF-8")
-        })?;
+        let text = source::read(path).map_err(|invalid| Refusal::new(Origin::File(path.into(), None), invalid))?;
         Self::parse(registry, &text, path)
     }
 
@@ -293,7 +284,7 @@ impl Scenario {
         let Subject::Free(system) = &mut self.subject else { return (self, None) };
         let Some((start, file)) = start::pack(system) else { return (self, None) };
         system.start = Some(start);
-        (self, Some((start::FILE, file)))
+        (self, Some((START, file)))
     }
 
     /// The scenario as a file that gives the same run again, bit for bit: numbers are written with as many digits as

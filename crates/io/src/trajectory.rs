@@ -20,6 +20,9 @@ const MOST_FRAMES: f64 = 1e6;
 /// What has been written is flushed at checkpoints, at the end, and otherwise after so long.
 const FLUSH: Duration = Duration::from_secs(10);
 
+/// The file beside a scenario that starts from a trajectory.
+pub(crate) const START: &str = "start.xyz";
+
 /// Format of a trajectory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
@@ -132,6 +135,9 @@ fn format(file: &str) -> Result<Format, Invalid> {
     let path = Path::new(file);
     if path.file_name() != Some(path.as_os_str()) || file.contains(['/', '\\', ':']) || file.starts_with('.') {
         return Err(refuse("the name of a file, which is written into the folder of the run"));
+    }
+    if file.eq_ignore_ascii_case(START) {
+        return Err(refuse("another name: this one is that of the frame a run started from"));
     }
     Format::of(path).ok_or_else(|| refuse(EXPECTED))
 }

@@ -15,8 +15,8 @@ pub enum WriteError {
     /// The folder holds something already.
     #[error("{}: the folder is not empty: choose another with --out, or overwrite its files with --force", .0.display())]
     NotEmpty(PathBuf),
-    /// The place is taken by something that is not a folder.
-    #[error("{}: expected a folder, but this is a file", .0.display())]
+    /// The place is taken by something that is not a folder, or by a link that could lead out of one.
+    #[error("{}: expected a folder, but this is a file or a link", .0.display())]
     NotAFolder(PathBuf),
     /// Another process writes into the folder.
     #[error("{}: in use by {owner}: wait for it, or choose another folder", .path.display())]
@@ -41,6 +41,9 @@ impl WriteError {
         move |source| Self::System { path: path.into(), source }
     }
 }
+
+/// The folders in that of a run.
+const BELOW: [&str; 2] = ["checkpoints", "pictures"];
 
 /// The folder a run writes into; no other process can have it at the same time.
 #[derive(Debug)]
@@ -67,7 +70,18 @@ impl Folder {
             Err(error) if error.kind() == io::ErrorKind::NotADirectory => return Err(WriteError::NotAFolder(path.into())),
             Err(error) => return Err(WriteError::system(path)(error)),
         }
-        Ok(Self { path: path.into(), _lock: Lock::take(path)? })
+        Self::take(path)
+    }
+
+    /// Takes a folder, of which a stranger may have made parts links to somewhere else.
+    fn take(path: &Path) -> Result<Self, WriteError> {
+        let lock = Lock::take(path)?;
+        for below in BELOW.map(|name| path.join(name)) {
+            if fs::symlink_metadata(&below).is_ok_and(|there| !there.is_dir()) {
+                return Err(WriteError::NotAFolder(below));
+            }
+        }
+        Ok(Self { path: path.into(), _lock: lock })
     }
 
     /// A new folder `parent/name`, or `parent/name-2`, `parent/name-3`, ... when that exists. The system creates it or
@@ -85,8 +99,7 @@ impl Folder {
                 Err(error) => return Err(WriteError::system(&path)(error)),
             }
         }
-        let lock = Lock::take(&path)?;
-        Ok(Self { path, _lock: lock })
+        Self::take(&path)
     }
 
     /// A folder that a run has written into before, and goes on to. What that run was writing when it ended is removed.
@@ -95,8 +108,8 @@ impl Folder {
     /// When it is not there.
     pub fn again(path: &Path) -> Result<Self, WriteError> {
         let here = fs::read_dir(path).map_err(WriteError::system(path))?;
-        let lock = Lock::take(path)?;
-        let below = ["checkpoints", "pictures"].into_iter().filter_map(|name| fs::read_dir(path.join(name)).ok());
+        let taken = Self::take(path)?;
+        let below = BELOW.into_iter().filter_map(|name| fs::read_dir(path.join(name)).ok());
         for entry in below.chain([here]).flatten().flatten() {
             let name = entry.file_name();
             let name = name.to_string_lossy();
@@ -105,7 +118,7 @@ impl Folder {
                 let _ = fs::remove_file(entry.path());
             }
         }
-        Ok(Self { path: path.into(), _lock: lock })
+        Ok(taken)
     }
 
     /// Removes what an earlier run left here that could be taken for the results of the next one, or for its state.

@@ -7,6 +7,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use clap::Args;
+use corpuscle_core::particles::ball_volume;
 use corpuscle_experiments::{Parameter, Simulation, Value};
 use corpuscle_io::number::significant;
 use corpuscle_io::{Registry, Scenario};
@@ -32,9 +33,19 @@ pub(crate) fn check(arguments: &Arguments, registry: Registry) -> Result<ExitCod
     let simulation = scenario.start()?;
     let end = scenario.duration.unwrap_or_else(|| simulation.end());
     let engine = simulation.honesty().engine;
-    let cost = cost(&scenario, time_needed(simulation, end));
+    let cost = crowd(simulation.as_ref()) + &cost(&scenario, time_needed(simulation, end));
     console::print(&explain(&scenario, &engine, end, &cost))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// How many particles there are, of replicas on show, and how much of the box they fill; nothing of an experiment without any.
+fn crowd(simulation: &dyn Simulation) -> String {
+    let Some(frame) = simulation.frame() else { return String::new() };
+    let ball = if frame.dimension == 2 { ball_volume::<2> } else { ball_volume::<3> };
+    let filled: f64 = frame.particles.radius.iter().map(|&radius| ball(radius)).sum();
+    let room: f64 = (0..frame.dimension).map(|k| frame.upper[k] - frame.lower[k]).product();
+    let packing = if filled > 0.0 { format!(", which fill {} of the box", significant(filled / room, 3)) } else { String::new() };
+    format!("  particles   {}{packing}\n", frame.particles.len())
 }
 
 /// What a run would cost.

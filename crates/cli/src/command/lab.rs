@@ -8,10 +8,10 @@ use corpuscle_lab::Options;
 use corpuscle_render::{RenderError, window};
 
 use super::{assignment, seed};
-use crate::console;
 use crate::picture::{LanguageName, PaletteName, Size};
 use crate::trouble::Trouble;
 use crate::usage;
+use crate::{console, memory};
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -46,6 +46,7 @@ pub(crate) fn lab(arguments: &Arguments, registry: Registry) -> Result<ExitCode,
             scenario.set(key, value)?;
         }
         scenario.settings.seed = arguments.seed.unwrap_or(scenario.settings.seed);
+        memory::admit(scenario)?;
     }
     open(registry, scenario, None, arguments.look)
 }

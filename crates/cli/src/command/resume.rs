@@ -65,7 +65,8 @@ type Found = (Checkpoint, Scenario, Box<dyn Simulation>);
 /// said.
 pub(super) fn newest_good(files: &[PathBuf], registry: Registry, scenario: &Path) -> Option<Found> {
     for file in files {
-        let found = Checkpoint::read(file).and_then(|checkpoint| {
+        let found = memory::admit_file(file).map_err(CheckpointError::from).and_then(|()| Checkpoint::read(file));
+        let found = found.and_then(|checkpoint| {
             let refused = |refusal: Refusal| CheckpointError::Content(corpuscle_checkpoint::Fault::new(refusal));
             let scenario = Scenario::parse(registry, &checkpoint.run.scenario, scenario).map_err(refused)?;
             memory::admit(&scenario).map_err(refused)?;

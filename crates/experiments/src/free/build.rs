@@ -16,6 +16,9 @@ use corpuscle_time::TimeDriven;
 
 use super::spec::{AxisName, EngineKind, System};
 
+/// Times the box is crossed at most in a run: years of computing.
+const MOST_CROSSINGS: f64 = 1e15;
+
 /// One of the two engines, behind one name.
 pub(super) enum AnyEngine<const D: usize> {
     /// Hard particles.
@@ -166,6 +169,7 @@ pub(super) fn build<const D: usize>(system: &System, seed: u64) -> Result<Built<
     if particles.is_empty() {
         return Err(Invalid::new("particle", 0, "at least one particle, in [[particle]], [[species]] or [start]"));
     }
+    finishable(system, &boundary, &particles)?;
     let held = pins.iter().flat_map(|pin| pin.axes).filter(|&held| held).count() + system.drives.len();
     let still = !system.field.iter().any(|&g| g != 0.0) && held == 0;
     let closed = boundary.conserves_momentum() && still && !soft::feels_the_outside(system);
@@ -196,6 +200,18 @@ pub(super) fn degrees_of_freedom<const D: usize>(particles: &Particles<D>, held:
     let massive = particles.mass.iter().filter(|&&mass| mass > 0.0).count();
     let shared = if closed && massive > 1 { D } else { 0 };
     (D * massive).saturating_sub(held + shared).max(1)
+}
+
+/// Refuses what nobody could wait for, and what a clock of 53 bits could not tell apart: a particle that crosses the box over and over.
+fn finishable<const D: usize>(system: &System, boundary: &Boundary<D>, particles: &Particles<D>) -> Result<(), Invalid> {
+    let fastest = particles.velocity.iter().map(|v| v.norm()).fold(0.0, f64::max);
+    let longest = boundary.extent().0.into_iter().fold(0.0, f64::max);
+    let most = MOST_CROSSINGS * longest / fastest;
+    if system.duration <= most {
+        return Ok(());
+    }
+    let expected = format!("at most {most:e}: by then the fastest particle has crossed the box {MOST_CROSSINGS:e} times");
+    Err(Invalid::new("duration", system.duration, expected))
 }
 
 fn event_driven<const D: usize>(

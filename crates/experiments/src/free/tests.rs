@@ -269,6 +269,7 @@ fn every_refusal_names_the_key_in_the_file() {
         (GAS, "'walls'", "['walls', 'walls', 'open']", "box.faces"),
         (GAS, "duration = 2.0", "duration = 0.0", "duration"),
         (GAS, "duration = 2.0", "duration = inf", "duration"),
+        (GAS, "duration = 2.0", "duration = 1e300", "duration"),
         (GAS, "duration = 2.0", "duration = 2.0\nsample_interval = 1e-9", "sample_interval"),
         (GAS, "duration = 2.0", "duration = 2.0\nsample_interval = -1.0", "sample_interval"),
         (GAS, "duration = 2.0", "duration = 2.0\nfield = [0.0, nan]", "field"),

@@ -8,11 +8,8 @@ use corpuscle_experiments::Frame;
 use corpuscle_experiments::free::System;
 use corpuscle_experiments::free::spec::{Imported, Start};
 
-use crate::trajectory::{self, ReadError, Snapshot};
+use crate::trajectory::{self, ReadError, START, Snapshot};
 use crate::xyz;
-
-/// The file beside a scenario that starts from one.
-pub(super) const FILE: &str = "start.xyz";
 
 /// Reads the particles that a scenario in `folder` starts from.
 ///
@@ -81,6 +78,6 @@ pub(super) fn pack(system: &System) -> Option<(Start, Vec<u8>)> {
     let bytes = xyz::frame(&frame).into_bytes();
     let sum = blake3::hash(&bytes).to_string();
     let keys =
-        Start { file: FILE.into(), frame: None, radius: None, mass: None, temperature: start.temperature, blake3: Some(sum) };
+        Start { file: START.into(), frame: None, radius: None, mass: None, temperature: start.temperature, blake3: Some(sum) };
     Some((keys, bytes))
 }

@@ -127,7 +127,7 @@ fn what_is_not_a_file_of_text_is_refused_by_name() {
     std::fs::write(&binary, [b'a', 0xff, 0xfe]).unwrap();
     assert!(read(&binary).contains("byte 1 is not UTF-8"));
     let endless = folder.path().join("long.toml");
-    File::create(&endless).unwrap().set_len(LONGEST_FILE + 1).unwrap();
+    std::fs::File::create(&endless).unwrap().set_len(source::LONGEST + 1).unwrap();
     assert!(read(&endless).contains("at most 16 MiB"));
 }
 

@@ -1,5 +1,6 @@
 //! Particles sorted in space, in blocks of neighbours: the memory order of pair forces.
 
+use corpuscle_core::instructions::{larger, smaller};
 use corpuscle_core::{Axis, Boundary, Vector};
 
 use crate::image::NearestImage;
@@ -106,7 +107,7 @@ impl<const D: usize> Columns<D> {
                     let ends = (!self.wraps[k] && slot == 0, !self.wraps[k] && slot == count - 1);
                     let left = if ends.0 { f64::NEG_INFINITY } else { self.lower[k] + slot as f64 / self.scale[k] };
                     let right = if ends.1 { f64::INFINITY } else { self.lower[k] + (slot + 1) as f64 / self.scale[k] };
-                    let gap = (left - high[k]).max(low[k] - right).max(0.0);
+                    let gap = larger(larger(left - high[k], low[k] - right), 0.0);
                     room -= gap * gap;
                 }
             }
@@ -185,8 +186,8 @@ impl<const D: usize> Blocks<D> {
     pub(crate) fn bounds(&self, block: usize) -> ([f64; D], [f64; D]) {
         let places = &self.position[block * LANES..(block + 1) * LANES];
         // Places without a particle hold no number, which is neither smaller nor larger than one.
-        let bound = |k: usize, start: f64, choose: fn(f64, f64) -> f64| places.iter().map(|r| r[k]).fold(start, choose);
-        (std::array::from_fn(|k| bound(k, f64::INFINITY, f64::min)), std::array::from_fn(|k| bound(k, f64::NEG_INFINITY, f64::max)))
+        let bound = |k: usize, start: f64, choose: fn(f64, f64) -> f64| places.iter().fold(start, |bound, r| choose(r[k], bound));
+        (std::array::from_fn(|k| bound(k, f64::INFINITY, smaller)), std::array::from_fn(|k| bound(k, f64::NEG_INFINITY, larger)))
     }
 }
 

@@ -8,13 +8,13 @@ mod frame;
 mod orbit;
 
 use corpuscle_checkpoint::{Resume, resume};
-use corpuscle_core::{Failure, Invalid, Random};
+use corpuscle_core::{self as core, Boundary, Failure, Invalid, Particles, Random, Vector};
 use corpuscle_observe::chart::Axis;
 use corpuscle_observe::{Chart, Check, Estimate, Series, Style};
 use corpuscle_scene::{Body, Camera, Colour, Colouring, Label, Scene, TrailPoint};
 
 use super::failure;
-use crate::{Honesty, Settings, Simulation, Table, ensemble};
+use crate::{Frame, Honesty, Settings, Simulation, Table, ensemble};
 use frame::Turning;
 use orbit::Orbit;
 
@@ -63,7 +63,7 @@ impl Restricted {
         let mut random = Random::new(settings.seed, STREAM);
         let starts = (0..grains).filter_map(|k| {
             let x = from + (to - from) * (k as f64 + random.uniform()) / grains as f64;
-            let square = 2.0 * frame.potential(corpuscle_core::Vector([x, 0.0])) - jacobi;
+            let square = 2.0 * frame.potential(Vector([x, 0.0])) - jacobi;
             (square > 0.0).then(|| (x, square.sqrt()))
         });
         let orbits = starts.map(|(x, speed)| Orbit::new(frame, x, speed, jacobi)).collect::<Result<Vec<_>, _>>()?;
@@ -153,6 +153,19 @@ impl Simulation for Restricted {
                 trail.push(TrailPoint { position: state.r.to_three(), time: state.time });
             }
         }
+    }
+
+    /// Both stars and all grains in the frame that turns; a grain that has hit a star stays where it did.
+    fn frame(&self) -> Option<Frame> {
+        let mut all = Particles::<2>::new();
+        for (mass, star) in self.frame.stars() {
+            all.push(star, Vector::ZERO, mass, 0.0, 0);
+        }
+        for now in self.orbits.iter().filter_map(|orbit| orbit.path.back()) {
+            all.push(now.r, now.v, 0.0, 0.0, 1);
+        }
+        let around = Boundary::new([-HALF; 2], [HALF; 2], core::Axis::Open);
+        Some(Frame::new(self.samples as f64 / SAMPLES as f64, &around, &all, &["stars".into(), "dust".into()]))
     }
 
     fn charts(&self) -> Vec<Chart> {

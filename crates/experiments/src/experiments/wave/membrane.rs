@@ -15,7 +15,7 @@ use corpuscle_observe::{Chart, Check, Series, Style, spectrum};
 use corpuscle_scene::{Camera, Cell, Colour, Colouring, Line, Map, Scene};
 use corpuscle_time::{Force, Integrator, Pin, Spring, Springs, TimeDriven};
 
-use crate::{Honesty, Settings, Simulation};
+use crate::{Frame, Honesty, Settings, Simulation};
 use parts::{Sources, Sponge};
 
 /// Masses along and across.
@@ -305,6 +305,23 @@ impl Simulation for Membrane {
         if !matches!(self.subject, Subject::Moving(_)) {
             line([SCREEN as f64, 0.0], [SCREEN as f64, (ROWS - 1) as f64], 1.0, Colour::Faint);
         }
+    }
+
+    /// All masses in space: at their places on the membrane, as high as they are displaced; those of a wall are held.
+    fn frame(&self) -> Option<Frame> {
+        let flat = self.engine.particles();
+        let mut masses = Particles::<3>::new();
+        for (i, (u, v)) in flat.position.iter().zip(&flat.velocity).enumerate() {
+            let (row, column) = (i / COLUMNS, i % COLUMNS);
+            let place = Vector([column as f64 * self.spacing, row as f64 * self.spacing, u[0]]);
+            let wall = column == BARRIER && !self.subject.is_open(row);
+            masses.push(place, Vector([0.0, 0.0, v[0]]), flat.mass[i], 0.0, u16::from(wall));
+        }
+        // The edges are open, and nothing is between one height and another.
+        let [width, height] = [COLUMNS, ROWS].map(|count| count as f64 * self.spacing);
+        let half = 0.5 * self.spacing;
+        let around = Boundary::new([-half, -half, -half], [width - half, height - half, half], Axis::Open);
+        Some(Frame::new(self.steps as f64 * self.dt, &around, &masses, &["masses".into(), "wall".into()]))
     }
 
     fn charts(&self) -> Vec<Chart> {

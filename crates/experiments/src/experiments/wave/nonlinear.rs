@@ -12,7 +12,7 @@ use corpuscle_observe::{Chart, Check, Schedule};
 use corpuscle_scene::{Body, Camera, Colour, Colouring, Label, Line, Region, Scene};
 use corpuscle_time::{Bonds, Force, Integrator, Pin, Spring, Springs, TimeDriven, Toda};
 
-use crate::{Honesty, Settings, Simulation, Table, ensemble};
+use crate::{Frame, Honesty, Settings, Simulation, Table, ensemble};
 use fput::Recurrence;
 use toda::Solitons;
 
@@ -206,6 +206,8 @@ impl Simulation for Nonlinear {
 
     fn advance(&mut self, to: f64) -> Result<(), Failure> {
         self.record_until(to)?;
+        // What is seen between two samples.
+        self.rows[0].engine.advance(to, &mut ())?;
         self.time = self.time.max(to);
         Ok(())
     }
@@ -220,6 +222,15 @@ impl Simulation for Nonlinear {
             Purpose::Recurrence(part) => self.draw_recurrence(part, scene),
             Purpose::Solitons(part) => self.draw_solitons(part, scene),
         }
+    }
+
+    /// Walls and masses of the chain with the finest step, along a line.
+    fn frame(&self) -> Option<Frame> {
+        let engine = &self.rows[0].engine;
+        let mut frame = Frame::new(engine.time(), engine.boundary(), engine.particles(), &["masses".into(), "walls".into()]);
+        let last = frame.particles.len() - 1;
+        (frame.particles.species[0], frame.particles.species[last]) = (1, 1);
+        Some(frame)
     }
 
     fn charts(&self) -> Vec<Chart> {

@@ -1,7 +1,7 @@
 //! Units of length in which squares of distances fit single precision.
 
 use corpuscle_core::Vector;
-use corpuscle_core::instructions::{Instructions, Kernel};
+use corpuscle_core::instructions::{Instructions, Kernel, larger};
 
 use super::lanes::LANES;
 
@@ -42,7 +42,6 @@ impl Kernel for Largest<'_> {
 
     #[inline(always)]
     fn run(self) -> f64 {
-        let larger = |x: f64, y: f64| if x > y { x } else { y };
         let (chunks, rest) = self.0.as_chunks::<LANES>();
         let mut largest = [0.0; LANES];
         for chunk in chunks {

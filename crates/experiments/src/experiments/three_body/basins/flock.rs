@@ -8,7 +8,7 @@
 #![allow(clippy::needless_range_loop, reason = "a lane indexes several arrays at once")]
 
 use corpuscle_core::Vector;
-use corpuscle_core::instructions::Kernel;
+use corpuscle_core::instructions::{Kernel, larger};
 
 use super::sky::Sky;
 
@@ -139,9 +139,7 @@ impl Ride<'_> {
                 let (x, y) = (stars[star][0] - r[0][lane], stars[star][1] - r[1][lane]);
                 let (u, w) = (speeds[star][0] - v[0][lane], speeds[star][1] - v[1][lane]);
                 let d2 = x * x + y * y + self.sky.softening_squared;
-                // Compared, not `f64::max`: what Rust 1.95 makes of that for AVX-512 has given other numbers here, as a test saw.
-                let rate = (u * u + w * w + self.sky.strength[star] / d2.sqrt()) / d2;
-                rates[lane] = if rate > rates[lane] { rate } else { rates[lane] };
+                rates[lane] = larger((u * u + w * w + self.sky.strength[star] / d2.sqrt()) / d2, rates[lane]);
             }
         }
         let mut fastest = 0.0f64;
