@@ -65,7 +65,7 @@ fn every_process_of_a_gas() {
     for process in ["effusion", "echo", "recurrence", "relaxation", "demon"] {
         experiment("entropy", &[("process", process), ("particles", "30"), ("replicas", "2")], 0.5);
     }
-    for process in ["adiabat", "piston", "warm-walls", "mixture"] {
+    for process in ["adiabat", "piston", "warm-walls", "mixture", "isotherms", "isobars"] {
         experiment("ideal-gas", &[("process", process), ("particles", "30"), ("replicas", "3"), ("duration", "5")], 0.5);
     }
     experiment(
@@ -107,6 +107,10 @@ fn other_settings() {
     experiment("wave", &[("preset", "fermi-pasta")], 0.05);
     experiment("wave", &[("preset", "solitons")], 0.2);
     experiment("wave", &[("preset", "two-sources")], 0.05);
+    for preset in ["matched-end", "damped-mode", "resonance"] {
+        experiment("wave", &[("preset", preset), ("masses", "20"), ("mode", "2"), ("pulse_width", "1")], 1.0);
+    }
+    experiment("lennard-jones", &[("state", "solid"), ("particles", "256"), ("duration", "6")], 1.0);
     experiment("newton-cradle", &[("masses", "1,3,0.5,2"), ("lifted", "1"), ("restitution", "0.8")], 1.0);
     experiment("atmosphere", &[("replicas", "2"), ("particles", "20"), ("floor", "insulating"), ("duration", "12")], 1.0);
 }
