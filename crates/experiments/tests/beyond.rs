@@ -115,7 +115,8 @@ fn engines() {
 /// Three agreements a run, each of a series that has to be long against its own correlations.
 #[test]
 fn lennard_jones() {
-    agrees_over_more_seeds("lennard-jones", &[("state", "solid"), ("particles", "256"), ("duration", "25")], 16);
+    let small = [("state", "solid"), ("particles", "256"), ("time_step", "0.008"), ("duration", "60")];
+    agrees_over_more_seeds("lennard-jones", &small, 16);
     repeats("lennard-jones", &[("particles", "256"), ("duration", "8")]);
     assert_eq!(refused("lennard-jones", &[("state", "solid"), ("particles", "300")]), "particles");
 }

@@ -162,7 +162,7 @@ fn scores_of_the_restricted_problem_and_of_eulers_line_are_normal() {
         }
     }
     println!("{scores:?}: mean {:.3}, mean square {:.3}", scores.mean(), scores.mean_square());
-    assert_eq!(scores.count(), 20);
+    assert_eq!(scores.count(), 30);
     assert!(scores.score_of_mean().abs() < 4.0 && scores.score_of_spread().abs() < 4.0, "{scores:?}");
 }
 

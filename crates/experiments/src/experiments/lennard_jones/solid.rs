@@ -112,6 +112,15 @@ impl Crystal {
         [energy, -self.density() * virial / 3.0]
     }
 
+    /// Mean of `omega^2` over all `3N` modes, the motion of the whole among them: a third of the trace of `sum_R Phi(R)`.
+    pub(super) fn mean_square_frequency(&self) -> f64 {
+        let trace = |arrow: &[i32; 3]| {
+            let (pull, bend) = derivatives(self.half * f64::from(arrow.iter().map(|x| x * x).sum::<i32>()).sqrt());
+            bend + 2.0 * pull
+        };
+        self.arrows.iter().map(trace).sum::<f64>() / 3.0
+    }
+
     /// `d(sum ln omega)/d ln V`.
     fn stiffening(&self) -> f64 {
         const STEP: f64 = 1e-4;

@@ -166,7 +166,9 @@ impl Trial {
         if self.finding.is_none() && target >= self.steps {
             let [fine, coarse] = [0, 1].map(|which| self.evaluate(&self.series[which]));
             let rest = self.rest();
-            let bound = |k: usize| (fine[k] - coarse[k]).abs() / 8.0 + rest[k];
+            // Of both as one complex number: either alone may be good by chance.
+            let step = (fine[0] - coarse[0]).hypot(fine[1] - coarse[1]) / 8.0;
+            let bound = |k: usize| step + rest[k];
             self.finding = Some(Finding { measured: fine, bound: [bound(0), bound(1)] });
         }
         Ok(())
