@@ -1,7 +1,7 @@
 //! One declaration of a parameter serves the scenario file, the command line, the window's slider and the documentation.
 
 use std::collections::BTreeMap;
-use std::fmt;
+use std::fmt::{self, Write};
 
 use corpuscle_core::Invalid;
 
@@ -179,7 +179,7 @@ pub fn table(parameters: &[Parameter]) -> String {
             value => value.to_string(),
         };
         let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
-        out += &format!("| `{name}` | {help} | {default}{unit} | {} |\n", parameter.expected());
+        let _ = writeln!(out, "| `{name}` | {help} | {default}{unit} | {} |", parameter.expected());
     }
     out
 }

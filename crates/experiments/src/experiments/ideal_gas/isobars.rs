@@ -198,7 +198,7 @@ impl<const D: usize> Specimen<D> for Pressed<D> {
 type Gases<const D: usize> = Replicas<Pressed<D>>;
 
 impl Isobars {
-    fn of<'a, const D: usize>(gases: &'a Gases<D>, index: usize) -> impl Iterator<Item = &'a Pressed<D>> {
+    fn of<const D: usize>(gases: &Gases<D>, index: usize) -> impl Iterator<Item = &Pressed<D>> {
         gases.members.iter().filter(move |gas| gas.point == index)
     }
 

@@ -37,7 +37,7 @@ pub(super) fn places(cells: usize, side: f64) -> impl Iterator<Item = Vector> {
 
 /// Number `n` of cells along each side of a crystal of `4 n^3` atoms.
 pub(super) fn cells(count: usize) -> Option<usize> {
-    (1..).take_while(|n| 4 * n * n * n <= count).find(|n| 4 * n * n * n == count)
+    (1..=count).take_while(|n| 4 * n * n * n <= count).find(|n| 4 * n * n * n == count)
 }
 
 /// A shell of neighbours: mean distance, its variance, and how many they are.

@@ -11,6 +11,8 @@
 //! four are `mu, 1/mu, nu, 1/nu`, for motion is symplectic; so `tr M = 8 + 2a + 2b` and `tr M^2 = 8 + 2(2a^2 - 1) + 2(2b^2 - 1)` with
 //! `2a = mu + 1/mu` and `2b = nu + 1/nu` say all. The orbit is stable in the linear sense where `a` and `b` are real and within `[-1, 1]`.
 
+use std::fmt::Write;
+
 use corpuscle_core::{Axis as Sides, Boundary, Engine, Failure, Invalid, Particles, Random, Vector};
 use corpuscle_observe::chart::{Axis, Series, Style};
 use corpuscle_observe::{Chart, Check, Estimate};
@@ -160,7 +162,9 @@ impl Replica {
             })
             .collect();
         let size = norm(&direction);
-        direction.iter_mut().for_each(|(r, v)| (*r, *v) = (*r * (1.0 / size), *v * (1.0 / size)));
+        for (r, v) in &mut direction {
+            (*r, *v) = (*r * (1.0 / size), *v * (1.0 / size));
+        }
         let twin = direction.iter().map(|&(r, v)| (r * APART, v * APART)).collect();
         let engine = engine(start, &bodies, &[twin], &[direction])?;
         Ok(Self { engine, bodies: bodies.len(), grown: (0.0, 0.0), growth: vec![] })
@@ -387,10 +391,12 @@ impl Lyapunov {
                 let rate = floquet.exponent();
                 chart =
                     chart.with(Series::theory("Floquet's multipliers", 0.0, last, 2, corpuscle_observe::Scale::Linear, |_| rate));
-                note +=
-                    &format!(" The orbit is unstable: a deviation grows {:.3e}fold in a period.", libm::exp(rate * floquet.period));
+                let grown = libm::exp(rate * floquet.period);
+                let _ = write!(note, " The orbit is unstable: a deviation grows {grown:.3e}fold in a period.");
             }
-            None => note += &format!(" Over this time λ = {:.4} ± {:.4}.", exponent.mean, exponent.standard_error),
+            None => {
+                let _ = write!(note, " Over this time λ = {:.4} ± {:.4}.", exponent.mean, exponent.standard_error);
+            }
         }
         chart.noting(note)
     }

@@ -145,7 +145,7 @@ impl Braked {
                 let signal = Signal::Sine { amplitude, angular_frequency: omega, phase: 0.0, ramp: 2.0 * TAU / omega };
                 let ends = Ends::Between(End::Driven(signal), End::Fixed);
                 let chain = Chain::new(design(ends, uniform, TAU / (omega * steps)), &[], &[])?;
-                let places = places_of_response((1..=RESONANCES.min(count)).map(omega_of).collect(), gamma);
+                let places = places_of_response(&(1..=RESONANCES.min(count)).map(omega_of).collect::<Vec<_>>(), gamma);
                 let trial = |&omega: &f64| Trial::response(material, count, watched(count), omega, gamma);
                 let trials = ensemble::build(&places, trial)?;
                 let periods = (trial::settling(gamma) * omega / TAU).ceil().min(40.0) + 2.0 + PERIODS as f64;
@@ -211,7 +211,7 @@ fn watched(count: usize) -> usize {
 }
 
 /// Frequencies at which a response is measured: about each resonance, and halfway between two.
-fn places_of_response(modes: Vec<f64>, gamma: f64) -> Vec<f64> {
+fn places_of_response(modes: &[f64], gamma: f64) -> Vec<f64> {
     let mut places: Vec<f64> = modes.iter().flat_map(|omega| ABOUT.map(|widths| omega + widths * gamma)).collect();
     places.extend(modes.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])));
     let (least, most) = (0.2 * modes[0], 1.15 * modes[modes.len() - 1]);

@@ -177,13 +177,12 @@ pub(super) static PARAMETERS: &[Parameter] = &[
 /// What each preset changes of the defaults, as one would write it on the command line.
 pub(super) fn preset(name: &str) -> &'static [(&'static str, &'static str)] {
     match name {
-        "fixed-end" => &[("density_ratio", "1")],
+        "fixed-end" | "matched-end" => &[("density_ratio", "1")],
         "free-end" => &[("density_ratio", "1"), ("ends", "free")],
         "ring" => &[("density_ratio", "1"), ("ends", "periodic")],
         "standing-wave" => &[("density_ratio", "1"), ("start", "mode"), ("masses", "60")],
         "shaker" => &[("density_ratio", "1"), ("start", "drive")],
         "longitudinal" => &[("polarisation", "longitudinal")],
-        "matched-end" => &[("density_ratio", "1")],
         "damped-mode" => &[("density_ratio", "1"), ("masses", "60")],
         "resonance" => &[("density_ratio", "1"), ("masses", "30"), ("mode", "2")],
         "dispersion" => &[("masses", "96"), ("density_ratio", "1")],

@@ -7,6 +7,9 @@ use corpuscle_observe::chart::{Axis, Chart, Scale, Series, Style};
 use super::trial::Purpose;
 use super::{Braked, Subject, long_echo, theory, watched};
 
+/// Pieces that the curves of a resonance are drawn in.
+const PARTS: usize = 1200;
+
 impl Braked {
     pub(super) fn all_charts(&self) -> Vec<Chart> {
         match self.subject {
@@ -104,7 +107,6 @@ impl Braked {
             a.hypot(b)
         };
         // The phase without jumps, followed from rest.
-        const PARTS: usize = 1200;
         let mut phases: Vec<(f64, f64)> = vec![];
         for part in 0..=PARTS {
             let omega = least + (most - least) * part as f64 / PARTS as f64;

@@ -87,7 +87,15 @@ impl Trial {
             Chain::new(design(material, count, Ends::Between(shaker, End::Free), friction, dt), &[], &[])
         };
         let shape = (0..count).map(|n| if n + 1 == sensor { 1.0 } else { 0.0 }).collect();
-        Self::new(Purpose::Echo { impedance }, material, [chain(dt)?, chain(2.0 * dt)?], 2.0 * dt, 5.0 * CLEAR * sigma, 0.0, shape)
+        Ok(Self::new(
+            Purpose::Echo { impedance },
+            material,
+            [chain(dt)?, chain(2.0 * dt)?],
+            2.0 * dt,
+            5.0 * CLEAR * sigma,
+            0.0,
+            shape,
+        ))
     }
 
     /// A mode that is let go, with the friction `gamma`: a frequency and a half of it below the critical one.
@@ -99,7 +107,7 @@ impl Trial {
         let dt = STEP / material.omega_0();
         let chain = |dt| Chain::new(make(dt), &shape, &vec![0.0; count]);
         let chains = [chain(dt)?, chain(2.0 * dt)?];
-        Self::new(Purpose::Decay { omega, gamma }, material, chains, 2.0 * dt, 1.5 * TAU / omega, 0.0, shape.clone())
+        Ok(Self::new(Purpose::Decay { omega, gamma }, material, chains, 2.0 * dt, 1.5 * TAU / omega, 0.0, shape.clone()))
     }
 
     /// A chain shaken at one end, held at the other, watched at `mass` when its start is forgotten.
@@ -116,23 +124,15 @@ impl Trial {
         let shape = (0..count).map(|n| if n == mass { 1.0 } else { 0.0 }).collect();
         let chains = [chain(0.5 * dt)?, chain(dt)?];
         let all = (settled + PERIODS as f64) * period;
-        Self::new(Purpose::Response { mass, omega, gamma }, material, chains, dt, all, settled * period, shape)
+        Ok(Self::new(Purpose::Response { mass, omega, gamma }, material, chains, dt, all, settled * period, shape))
     }
 
-    fn new(
-        purpose: Purpose,
-        material: Material,
-        chains: [Chain; 2],
-        dt: f64,
-        until: f64,
-        from: f64,
-        shape: Vec<f64>,
-    ) -> Result<Self, Invalid> {
+    fn new(purpose: Purpose, material: Material, chains: [Chain; 2], dt: f64, until: f64, from: f64, shape: Vec<f64>) -> Self {
         let step = |time: f64| (time / dt).round() as u64;
         let (chains, series, steps, first) = (chains.into(), vec![vec![]; 2], step(until), step(from));
         let mut trial = Self { purpose, material, chains, dt, steps, first, shape, series, finding: None };
         trial.record(0);
-        Ok(trial)
+        trial
     }
 
     fn record(&mut self, step: u64) {
