@@ -154,7 +154,8 @@ impl Trial {
     /// # Errors
     /// As [`Chain::advance`].
     pub(super) fn advance(&mut self, share: f64) -> Result<(), Failure> {
-        let target = (self.steps as f64 * share.clamp(0.0, 1.0)) as u64;
+        // A share may be rounded to just below the whole.
+        let target = (self.steps as f64 * (share + 1e-12).clamp(0.0, 1.0)) as u64;
         for step in self.chains[1].steps() + 1..=target {
             // Half a fine step more, so that rounding leaves no step out.
             let to = (step as f64 + 0.25) * self.dt;
