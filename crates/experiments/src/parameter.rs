@@ -1,7 +1,7 @@
 //! One declaration of a parameter serves the scenario file, the command line, the window's slider and the documentation.
 
 use std::collections::BTreeMap;
-use std::fmt;
+use std::fmt::{self, Write};
 
 use corpuscle_core::Invalid;
 
@@ -165,6 +165,23 @@ impl Parameter {
         };
         self.accept(value).map_err(|_| refused())
     }
+}
+
+/// The table of these parameters in Markdown: key, what it means, default, what is accepted.
+pub fn table(parameters: &[Parameter]) -> String {
+    let mut out = String::from("| key | meaning | default | accepted |\n|---|---|---|---|\n");
+    for parameter in parameters {
+        let Parameter { name, unit, help, .. } = parameter;
+        let help = help.split_whitespace().collect::<Vec<_>>().join(" ").replace('|', "\\|");
+        let default = match parameter.default() {
+            Value::List(list) if list.is_empty() => "none".into(),
+            Value::List(list) => list.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "),
+            value => value.to_string(),
+        };
+        let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+        let _ = writeln!(out, "| `{name}` | {help} | {default}{unit} | {} |", parameter.expected());
+    }
+    out
 }
 
 /// A complete, checked set of parameters, with the seed.

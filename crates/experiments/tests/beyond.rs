@@ -112,10 +112,17 @@ fn engines() {
     assert_eq!(refused("engines", &[("hardness", "1")]), "hardness");
 }
 
+/// Three agreements a run, each of a series that has to be long against its own correlations.
+#[test]
+fn lennard_jones() {
+    let small = [("state", "solid"), ("particles", "256"), ("time_step", "0.008"), ("duration", "60")];
+    agrees_over_more_seeds("lennard-jones", &small, 16);
+    repeats("lennard-jones", &[("particles", "256"), ("duration", "8")]);
+    assert_eq!(refused("lennard-jones", &[("state", "solid"), ("particles", "300")]), "particles");
+}
+
 #[test]
 #[ignore = "takes minutes"]
-fn lennard_jones() {
+fn lennard_jones_liquid() {
     agrees_over_more_seeds("lennard-jones", &[], 16);
-    repeats("lennard-jones", &[("particles", "256")]);
-    assert_eq!(refused("lennard-jones", &[("state", "solid")]), "state");
 }

@@ -65,7 +65,7 @@ fn every_process_of_a_gas() {
     for process in ["effusion", "echo", "recurrence", "relaxation", "demon"] {
         experiment("entropy", &[("process", process), ("particles", "30"), ("replicas", "2")], 0.5);
     }
-    for process in ["adiabat", "piston", "warm-walls", "mixture"] {
+    for process in ["adiabat", "piston", "warm-walls", "mixture", "isotherms", "isobars"] {
         experiment("ideal-gas", &[("process", process), ("particles", "30"), ("replicas", "3"), ("duration", "5")], 0.5);
     }
     experiment(
@@ -103,6 +103,10 @@ fn other_settings() {
     experiment("three-body", &[("preset", "pythagorean"), ("integrator", "velocity-verlet")], 0.1);
     experiment("three-body", &[("show", "basins"), ("resolution", "40"), ("duration", "6")], 1.0);
     experiment("wave", &[("start", "drive")], 0.5);
+    for preset in ["matched-end", "damped-mode", "resonance"] {
+        experiment("wave", &[("preset", preset), ("masses", "20"), ("mode", "2"), ("pulse_width", "1")], 1.0);
+    }
+    experiment("lennard-jones", &[("state", "solid"), ("particles", "256"), ("duration", "6")], 1.0);
     experiment("newton-cradle", &[("masses", "1,3,0.5,2"), ("lifted", "1"), ("restitution", "0.8")], 1.0);
     experiment("atmosphere", &[("replicas", "2"), ("particles", "20"), ("floor", "insulating"), ("duration", "12")], 1.0);
 }

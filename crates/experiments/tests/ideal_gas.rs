@@ -66,7 +66,8 @@ fn scores_of_spheres_are_standard_normal() {
 #[test]
 fn scores_of_the_other_processes_are_standard_normal() {
     let few = [("particles", "100"), ("replicas", "8"), ("duration", "20")];
-    for (process, seeds) in [("warm-walls", 16), ("mixture", 12), ("adiabat", 40), ("piston", 16)] {
+    let seeds = [("warm-walls", 16), ("mixture", 12), ("adiabat", 40), ("piston", 16), ("isotherms", 10), ("isobars", 10)];
+    for (process, seeds) in seeds {
         common::agrees_over_more_seeds("ideal-gas", &[&few[..], &[("process", process)]].concat(), seeds);
         for check in common::run("ideal-gas", 1, &[&few[..], &[("process", process), ("dimension", "3")]].concat(), 1).checks() {
             assert!(check.passed, "{process}: {check:?}");
@@ -76,7 +77,7 @@ fn scores_of_the_other_processes_are_standard_normal() {
 
 #[test]
 fn the_other_processes_repeat() {
-    for process in ["warm-walls", "mixture", "adiabat", "piston"] {
+    for process in ["warm-walls", "mixture", "adiabat", "piston", "isotherms", "isobars"] {
         let values = [("process", process), ("particles", "40"), ("replicas", "4"), ("duration", "5")];
         let (whole, stopped) = (run(3, &values), common::run("ideal-gas", 3, &values, 29));
         assert_eq!(whole.checks(), stopped.checks(), "{process}");
@@ -134,6 +135,8 @@ fn nonsense_is_refused_by_name() {
         assert_eq!((error.key.as_str(), error.value.as_str()), (key, text));
     }
     assert_eq!(common::refused("ideal-gas", &[("process", "adiabat"), ("speeds", "1,0.5")]), "speeds");
+    assert_eq!(common::refused("ideal-gas", &[("process", "isotherms"), ("temperatures", "2,1")]), "temperatures");
+    assert_eq!(common::refused("ideal-gas", &[("process", "isotherms"), ("dense_packings", "")]), "dense_packings");
 }
 
 #[test]

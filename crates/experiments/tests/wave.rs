@@ -121,6 +121,17 @@ fn stopping_on_the_way_changes_nothing() {
 }
 
 #[test]
+fn stopping_changes_nothing_of_chains_with_friction() {
+    for preset in ["matched-end", "damped-mode", "resonance"] {
+        let set = settings(1, &[("preset", preset), ("masses", "20"), ("mode", "2"), ("pulse_width", "1"), ("damping", "0.05")]);
+        let (once, often) = (run(&set, 1), run(&set, 31));
+        assert_eq!(once.checks(), often.checks());
+        assert_eq!(format!("{:?}", once.charts()), format!("{:?}", often.charts()));
+        assert!(!once.checks().is_empty());
+    }
+}
+
+#[test]
 fn threads_change_nothing() {
     let set = settings(3, &[]);
     let on = |threads| {
@@ -178,6 +189,13 @@ fn nonlinear_chains_and_membranes_agree_with_theory() {
         (&[("preset", "dispersion"), ("masses", "41"), ("stiffness", "9"), ("spacing", "0.2")], 3),
         (&[("preset", "solitons")], 2),
         (&[("preset", "solitons"), ("solitons", "1.4,1,0.6"), ("masses", "700"), ("stiffness", "4"), ("spacing", "0.5")], 2),
+        (&[("preset", "matched-end")], 2),
+        (&[("preset", "matched-end"), ("end_impedance", "0.3"), ("stiffness", "4"), ("spacing", "0.5")], 2),
+        (&[("preset", "matched-end"), ("end_impedance", "30")], 2),
+        (&[("preset", "damped-mode")], 1),
+        (&[("preset", "damped-mode"), ("mode", "20"), ("mass", "3"), ("damping", "0.4")], 1),
+        (&[("preset", "resonance")], 1),
+        (&[("preset", "resonance"), ("masses", "12"), ("mass", "2"), ("damping", "0.1"), ("drive_frequency", "0.1")], 1),
         (&[("preset", "two-sources")], 1),
         (&[("preset", "double-slit")], 1),
         (&[("preset", "single-slit")], 1),
@@ -207,6 +225,10 @@ fn nonlinear_chains_and_membranes_refuse_nonsense_by_name() {
         (&[("preset", "fermi-pasta"), ("mode", "40")], "mode"),
         (&[("preset", "fermi-pasta"), ("time_step", "3")], "time_step"),
         (&[("preset", "double-slit"), ("slit_width", "41")], "slit_width"),
+        (&[("preset", "matched-end"), ("pulse_width", "9")], "pulse_width"),
+        (&[("preset", "damped-mode"), ("mode", "61")], "mode"),
+        (&[("preset", "resonance"), ("masses", "300")], "masses"),
+        (&[("preset", "resonance"), ("damping", "0.5")], "damping"),
     ] {
         let error = (find("wave").unwrap().start)(&settings(1, changes)).err().expect("refused");
         assert_eq!(error.key, key, "{error}");

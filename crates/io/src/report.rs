@@ -4,6 +4,7 @@
 mod axis;
 mod chart;
 mod html;
+mod residuals;
 
 use std::fmt::Write;
 
@@ -57,7 +58,8 @@ pub fn chart_file(chart: &Chart) -> String {
     let inside = drawn.strip_prefix("<svg").unwrap_or(&drawn);
     let (attributes, rest) = inside.split_once('>').unwrap_or((inside, ""));
     let fonts = "font-family=\"Inter, 'Segoe UI', Helvetica, Arial, 'DejaVu Sans', sans-serif\" font-size=\"12.5\"";
-    let ground = "<rect x=\"-8\" y=\"-8\" width=\"656\" height=\"416\" style=\"fill: var(--paper)\"/>";
+    let height = chart::height(chart) + 16.0;
+    let ground = format!("<rect x=\"-8\" y=\"-8\" width=\"656\" height=\"{height}\" style=\"fill: var(--paper)\"/>");
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"chart\" width=\"840\" {fonts}{attributes}>\n\
          <title>{}</title>\n<style>\n{STYLE}</style>\n{ground}{rest}\n",

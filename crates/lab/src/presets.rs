@@ -53,6 +53,8 @@ const PRESETS: &[(&str, &[Preset])] = &[
             preset("three times as dense", &[("packing_fraction", "0.03")]),
             preset("twice as hot", &[("temperature", "2")]),
             preset("heavy molecules", &[("mass", "20")]),
+            preset("isotherms", &[("process", "isotherms")]),
+            preset("pressure held", &[("process", "isobars")]),
             preset("adiabat", &[("process", "adiabat")]),
             preset("swinging piston", &[("process", "piston")]),
             preset("warm walls", &[("process", "warm-walls")]),

@@ -109,7 +109,7 @@ pub struct Chart {
     /// Ordinate.
     pub y: Axis,
     /// The series, in drawing order. Several theories, each next to its own measurement in the list (theory, points, theory,
-    /// points, ...), share its colour; in any other order theory is drawn in ink.
+    /// points, ...), share its colour; theories before those, and theories in any other order, are drawn in ink.
     pub series: Vec<Series>,
     /// One sentence: what to look at.
     pub note: String,
@@ -119,6 +119,16 @@ impl Chart {
     /// A chart without series yet.
     pub fn new(name: impl Into<String>, title: impl Into<String>, x: Axis, y: Axis) -> Self {
         Self { name: name.into(), title: title.into(), x, y, series: vec![], note: String::new() }
+    }
+
+    /// How many theories at the front have no measurement of their own, where all the other series come in two pairs or more of a
+    /// theory and its measurement; none where they do not.
+    pub fn before_pairs(&self) -> Option<usize> {
+        let is_theory = |series: &&Series| series.style == Style::Theory;
+        let lone = self.series.iter().take_while(is_theory).count().saturating_sub(1);
+        let rest = &self.series[lone..];
+        let alternates = rest.chunks(2).all(|pair| pair.len() == 2 && pair.iter().filter(is_theory).count() == 1);
+        (rest.len() > 2 && alternates).then_some(lone)
     }
 
     /// The same chart with one more series.
@@ -133,5 +143,27 @@ impl Chart {
     pub fn noting(mut self, note: impl Into<String>) -> Self {
         self.note = note.into();
         self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn theories_and_measurements_in_turn_are_pairs() {
+        let before_pairs = |styles: &str| {
+            let axes = (Axis::linear("x", ""), Axis::linear("y", ""));
+            let style = |letter| if letter == 't' { Style::Theory } else { Style::Points };
+            styles
+                .chars()
+                .fold(Chart::new("c", "C", axes.0, axes.1), |chart, letter| chart.with(Series::new("", style(letter), [])))
+                .before_pairs()
+        };
+        for (styles, expected) in
+            [("tptp", Some(0)), ("ptpt", Some(0)), ("ttptp", Some(1)), ("tp", None), ("ttpp", None), ("ttp", None), ("tptpp", None)]
+        {
+            assert_eq!(before_pairs(styles), expected, "{styles}");
+        }
     }
 }

@@ -1,11 +1,14 @@
 //! The ideal gas law, measured: hard particles in a box, and what an experimenter does to them.
 //!
-//! `laws` sweeps volume, temperature and number; `adiabat` compresses slowly and fast; `piston` lets a loaded piston swing;
+//! `laws` sweeps volume, temperature and number; `isotherms` holds the temperature or the volume, up to dense fluids, `isobars` the
+//! pressure; `adiabat` compresses slowly and fast; `piston` lets a loaded piston swing;
 //! `warm_walls` keeps the temperature instead of the energy; `mixture` has two gases in one box.
 
 mod adiabat;
 mod charts;
 mod checks;
+mod isobars;
+mod isotherms;
 mod laws;
 mod mixture;
 mod piston;
@@ -32,9 +35,13 @@ pub(crate) static EXPERIMENT: Experiment = Experiment {
         Parameter {
             name: "process",
             unit: "",
-            help: "What is done: the sweeps of the laws, a slow and a fast compression (adiabat), a piston under a constant force, \
-                   walls with a temperature, a mixture of two gases.",
-            kind: Kind::Choice { default: "laws", options: &["laws", "adiabat", "piston", "warm-walls", "mixture"] },
+            help: "What is done: the sweeps of the laws, temperatures or volumes held up to dense fluids (isotherms), pressure held by \
+                   a loaded piston (isobars), a slow and a fast compression (adiabat), a piston under a constant force, walls with a \
+                   temperature, a mixture of two gases.",
+            kind: Kind::Choice {
+                default: "laws",
+                options: &["laws", "isotherms", "isobars", "adiabat", "piston", "warm-walls", "mixture"],
+            },
         },
         gas::DIMENSION,
         Parameter {
@@ -86,6 +93,12 @@ pub(crate) static EXPERIMENT: Experiment = Experiment {
             kind: Kind::List { default: &[0.05, 0.1, 0.2, 0.3], least: 0.01, most: 0.6, longest: 10 },
         },
         Parameter {
+            name: "temperatures",
+            unit: "T",
+            help: "Isotherms: their temperatures, over that of the base state.",
+            kind: Kind::List { default: &[0.5, 1.0, 2.0], least: 1e-3, most: 1e3, longest: 6 },
+        },
+        Parameter {
             name: "speeds",
             unit: "sqrt(kT/m)",
             help: "Adiabat: speeds of the wall that halves the volume, the slowest first; the limit of slowness is extrapolated from \
@@ -95,7 +108,7 @@ pub(crate) static EXPERIMENT: Experiment = Experiment {
         Parameter {
             name: "piston_mass",
             unit: "N m",
-            help: "Piston: its mass, in masses of all the gas.",
+            help: "Piston and isobars: mass of the piston, in masses of all the gas.",
             kind: Kind::Real { default: 2.0, least: 1.0, most: 1e4 },
         },
         Parameter {
@@ -129,6 +142,8 @@ fn start(settings: &Settings) -> Result<Box<dyn Simulation>, Invalid> {
 
 fn start_in<const D: usize>(settings: &Settings) -> Result<Box<dyn Simulation>, Invalid> {
     Ok(match settings.word("process") {
+        "isotherms" => Box::new(isotherms::start::<D>(settings)?),
+        "isobars" => Box::new(isobars::start::<D>(settings)?),
         "adiabat" => Box::new(adiabat::start::<D>(settings)?),
         "piston" => Box::new(piston::start::<D>(settings)?),
         "warm-walls" => Box::new(warm_walls::start::<D>(settings)?),

@@ -1,11 +1,13 @@
-//! The Lennard-Jones fluid: argon, more or less, as a gas and as a liquid, held against published values.
+//! The Lennard-Jones fluid: argon, more or less, as a gas, as a liquid and frozen, held against published values.
 //!
 //! `U(r) = 4 epsilon ((sigma/r)^12 - (sigma/r)^6)`, cut at `r_c = 3 sigma`, in reduced units (`epsilon = sigma = m = k_B = 1`), at constant
 //! temperature. Of the liquid, energy and pressure stand beside those of the NIST Standard Reference Simulation Website
 //! (doi:10.18434/T4M88Q; Monte Carlo, 500 particles, the same cutoff), with the usual corrections for what lies beyond, where
 //! `g = 1`: `U/N + (8/3) pi rho (r_c^-9/3 - r_c^-3)`, `P + (16/3) pi rho^2 (2 r_c^-9/3 - r_c^-3)`. Of the thin gas, beside the second
 //! virial coefficient `B_2 = -2 pi int (e^(-U/kT) - 1) r^2 dr`: `P = rho k T (1 + B_2 rho)`, `U/N = -rho T^2 dB_2/dT`, and
-//! `g(r) = e^(-U(r)/kT)`.
+//! `g(r) = e^(-U(r)/kT)`. Of the crystal, beside the lattice and its phonons.
+
+mod solid;
 
 use std::f64::consts::PI;
 
@@ -22,7 +24,7 @@ use crate::{Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, d
 pub(crate) static EXPERIMENT: Experiment = Experiment {
     name: "lennard-jones",
     title: "The Lennard-Jones fluid",
-    summary: "Soft particles that attract each other, as a thin gas and as a liquid: structure, energy and pressure beside \
+    summary: "Soft particles that attract each other, as a thin gas, a liquid and a crystal: structure, energy and pressure beside \
               published values.",
     dimensions: &[3],
     engines: &["time-driven"],
@@ -34,13 +36,14 @@ static PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "state",
         unit: "",
-        help: "A liquid close to its vapour, a denser one under pressure, or a thin gas; theory or published values for each.",
-        kind: Kind::Choice { default: "liquid", options: &["liquid", "dense", "gas"] },
+        help: "A liquid close to its vapour, a denser one under pressure, a thin gas, or a cold crystal (solid); theory or published \
+               values for each.",
+        kind: Kind::Choice { default: "liquid", options: &["liquid", "dense", "gas", "solid"] },
     },
     Parameter {
         name: "particles",
         unit: "",
-        help: "Number of particles; published values are of 500.",
+        help: "Number of particles; published values are of 500. A crystal has 4 n^3: 256, 500, 864 ...",
         kind: Kind::Whole { default: 500, least: 250, most: 100_000 },
     },
     Parameter {
@@ -63,6 +66,8 @@ const CUTOFF: f64 = 3.0;
 const SETTLING: f64 = 12.0;
 /// Samples per time; of the structure a tenth as many.
 const RESOLUTION: f64 = 10.0;
+/// Rate of the friction of a crystal's bath.
+const FRICTION: f64 = 4.0;
 const STRUCTURE: u64 = 10;
 /// Range and bins of `g(r)`.
 const RANGE: f64 = 3.5;
@@ -76,23 +81,34 @@ struct State {
     /// Energy per particle and pressure.
     expected: [Estimate; 2],
     reference: &'static str,
+    phase: Phase,
     /// How many times slower things happen than in the liquid: sampled as much more rarely, and measured as much longer.
     pace: f64,
-    /// Whether energies are those of the potential cut and not shifted, with what lies beyond added.
-    corrected: bool,
+}
+
+/// What is known of a state, and how.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    /// Energies are those of the potential cut and not shifted, with what lies beyond added.
+    Liquid,
+    /// Cut and shifted.
+    Gas,
+    /// Cut and not shifted; theory knows of nothing beyond.
+    Solid,
 }
 
 const NIST: &str = "NIST Standard Reference Simulation Website, doi:10.18434/T4M88Q: constant volume, T = 0.85";
 
 impl State {
-    fn named(word: &str) -> Self {
+    /// The state of this name, of so many particles.
+    fn named(word: &str, count: usize) -> Self {
         let published = |density: f64, energy: Estimate, pressure: Estimate| Self {
             density,
             temperature: 0.85,
             expected: [energy, pressure],
             reference: NIST,
+            phase: Phase::Liquid,
             pace: 1.0,
-            corrected: true,
         };
         match word {
             "dense" => published(0.82, Estimate::new(-5.7947, 6.03e-4), Estimate::new(5.5355e-1, 4.13e-3)),
@@ -103,7 +119,15 @@ impl State {
                 let pressure = density * temperature * (1.0 + second * density);
                 let expected = [Estimate::exact(energy), Estimate::exact(pressure)];
                 let reference = "second virial coefficient, by quadrature; the third adds less than a hundredth";
-                Self { density, temperature, expected, reference, pace: 4.0, corrected: false }
+                Self { density, temperature, expected, reference, phase: Phase::Gas, pace: 4.0 }
+            }
+            "solid" => {
+                // Nearly without pressure; the cutoff lies midway between two shells, farther from either than atoms get.
+                let (density, temperature) = (1.08, 0.1);
+                let expected = solid::crystal(count, density).map_or([f64::NAN; 2], |crystal| crystal.expected(temperature));
+                let reference =
+                    "lattice and phonons of this very crystal, with van der Hoef's anharmonic part (2000, doi:10.1063/1.1314342)";
+                Self { density, temperature, expected: expected.map(Estimate::exact), reference, phase: Phase::Solid, pace: 1.0 }
             }
             _ => published(0.776, Estimate::new(-5.5121, 4.55e-4), Estimate::new(6.7714e-3, 1.72e-3)),
         }
@@ -111,7 +135,7 @@ impl State {
 
     /// What lies beyond the cutoff, of energy per particle and pressure.
     fn beyond(&self) -> [f64; 2] {
-        if !self.corrected {
+        if self.phase != Phase::Liquid {
             return [0.0; 2];
         }
         let (third, ninth) = (CUTOFF.powi(-3), CUTOFF.powi(-9));
@@ -171,42 +195,56 @@ struct Fluid {
     temperatures: Vec<f64>,
     structure: RadialDistribution<3>,
     started: f64,
+    /// Of a crystal, with its shells of neighbours.
+    crystal: Option<(solid::Crystal, Vec<solid::Shell>)>,
 }
 
 resume!(Fluid {
     values: [schedule, energies, pressures, temperatures, structure],
     parts: [engine],
-    set_up: [state, duration, started],
+    set_up: [state, duration, started, crystal],
 });
 
 impl Fluid {
     fn new(settings: &Settings) -> Result<Self, Invalid> {
-        let state = State::named(settings.word("state"));
         let (count, dt) = (settings.whole("particles"), settings.real("time_step"));
+        let state = State::named(settings.word("state"), count);
         let boundary = Boundary::<3>::periodic(libm::cbrt(count as f64 / state.density));
         let half = 0.5 * boundary.extent()[0];
         let mut random = Random::new(settings.seed, 0);
         let mut particles = Particles::new();
-        for place in placement::lattice(&boundary, count, 0.0, &mut random, |_| true)? {
+        let places = if state.phase == Phase::Solid {
+            let cells =
+                solid::cells(count).ok_or_else(|| settings.invalid("particles", "4 n^3 of a crystal: 256, 500, 864, 1372 ..."))?;
+            solid::places(cells, boundary.extent()[0]).map(Vector).collect()
+        } else {
+            placement::lattice(&boundary, count, 0.0, &mut random, |_| true)?
+        };
+        for place in places {
             particles.push(place, Vector::ZERO, 1.0, 0.0, 0);
         }
         placement::maxwell(&mut particles, state.temperature, true, &mut random);
         let mut force = PairForce::new(LennardJones { epsilon: 1.0, sigma: 1.0, cutoff: CUTOFF });
-        if state.corrected {
+        if state.phase != Phase::Gas {
             force = force.unshifted();
         }
         let forces: Vec<Box<dyn Force<3>>> = vec![Box::new(force)];
-        let integrator = Integrator::StochasticRescaling {
-            dt,
-            temperature: state.temperature,
-            relaxation_time: 0.5,
-            degrees_of_freedom: 3 * (count as u32 - 1),
-            seed: settings.seed,
+        let (temperature, seed) = (state.temperature, settings.seed);
+        let integrator = if state.phase == Phase::Solid {
+            // The modes of a cold crystal hardly know of each other: each needs a bath of its own.
+            Integrator::Langevin { dt, temperature, friction: FRICTION, seed }
+        } else {
+            let degrees_of_freedom = 3 * (count as u32 - 1);
+            Integrator::StochasticRescaling { dt, temperature, relaxation_time: 0.5, degrees_of_freedom, seed }
         };
         let structure = RadialDistribution::new(&boundary, RANGE.min(half), BINS)?;
         let mut engine = TimeDriven::new(boundary, particles, forces, integrator)?;
         engine.advance(SETTLING * state.pace, &mut ()).map_err(|failure| Invalid::new("time_step", dt, failure.to_string()))?;
         let started = engine.time();
+        let crystal = solid::crystal(count, state.density).filter(|_| state.phase == Phase::Solid).map(|crystal| {
+            let shells = crystal.shells(state.temperature, RANGE);
+            (crystal, shells)
+        });
         Ok(Self {
             state,
             duration: settings.real("duration") * state.pace,
@@ -217,6 +255,7 @@ impl Fluid {
             temperatures: vec![],
             structure,
             started,
+            crystal,
         })
     }
 
@@ -227,7 +266,9 @@ impl Fluid {
         self.energies.push(self.engine.potential_energy() / count as f64 + energy);
         // The kinetic part is k T by construction: the mean, known exactly, in place of the sample.
         self.pressures.push(self.state.density * self.state.temperature + self.engine.virial() / (3.0 * volume) + pressure);
-        self.temperatures.push(particles.temperature(3 * (count - 1)));
+        // Friction and noise do not keep the momentum of the whole.
+        let freedom = 3 * (count - usize::from(self.crystal.is_none()));
+        self.temperatures.push(particles.temperature(freedom));
         if self.schedule.count().is_multiple_of(STRUCTURE) {
             self.structure.add(particles);
         }
@@ -255,17 +296,23 @@ impl Fluid {
     fn structure_chart(&self) -> Chart {
         let points = self.structure.points();
         let mut chart = Chart::new("structure", "Structure", Axis::linear("distance r", "σ"), Axis::linear("g(r)", ""));
-        if self.state.corrected {
-            chart = chart.with(Series::theory("independent", 0.0, RANGE, 2, Scale::Linear, |_| 1.0));
-        } else {
-            let shift = potential(CUTOFF);
-            let law = |r: f64| libm::exp(-(if r < CUTOFF { potential(r) - shift } else { 0.0 }) / self.state.temperature);
-            chart = chart.with(Series::theory("exp(−U/kT)", 0.5, RANGE, 200, Scale::Linear, law));
-        }
-        let style = if self.state.corrected { Style::Line } else { Style::Points };
+        let temperature = self.state.temperature;
+        chart = chart.with(match self.state.phase {
+            Phase::Liquid => Series::theory("independent", 0.0, RANGE, 2, Scale::Linear, |_| 1.0),
+            Phase::Gas => {
+                let shift = potential(CUTOFF);
+                let law = |r: f64| libm::exp(-(if r < CUTOFF { potential(r) - shift } else { 0.0 }) / temperature);
+                Series::theory("exp(−U/kT)", 0.5, RANGE, 200, Scale::Linear, law)
+            }
+            Phase::Solid => {
+                let law = |r: f64| self.crystal.as_ref().map_or(f64::NAN, |(crystal, shells)| crystal.structure(shells, r));
+                Series::theory("lattice and phonons", 0.5, RANGE, 400, Scale::Linear, law)
+            }
+        });
+        let style = if self.state.phase == Phase::Liquid { Style::Line } else { Style::Points };
         chart
             .with(Series::with_errors("measured", style, points.into_iter().map(|(r, g)| (r, g.mean, g.standard_error))))
-            .noting("A liquid has shells of neighbours; a thin gas has one, where the potential has its well.")
+            .noting("A liquid has shells of neighbours, a thin gas one, where the potential has its well, and a crystal has them sharp and far out.")
     }
 }
 
@@ -321,7 +368,11 @@ impl Simulation for Fluid {
             return vec![];
         }
         let [energy, pressure] = self.state.expected;
-        let known = if self.state.corrected { "NIST" } else { "second virial coefficient" };
+        let known = match self.state.phase {
+            Phase::Liquid => "NIST",
+            Phase::Gas => "second virial coefficient",
+            Phase::Solid => "lattice and phonons",
+        };
         let mut charts = vec![];
         if self.structure.samples() > 1 {
             charts.push(self.structure_chart());
@@ -341,11 +392,18 @@ impl Simulation for Fluid {
         let checks = [
             u.check_against(energy, "energy per particle U/N", self.state.reference),
             p.check_against(pressure, "pressure P", self.state.reference),
-            temperature.check(
-                "temperature",
-                self.state.temperature,
-                "the thermostat's (Bussi, Donadio and Parrinello 2007, doi:10.1063/1.2408420)",
-            ),
+            match (&self.crystal, self.engine.integrator().dt()) {
+                (Some((crystal, _)), Some(dt)) => temperature.check(
+                    "temperature",
+                    self.state.temperature * (1.0 - 0.25 * dt * dt * crystal.mean_square_frequency()),
+                    "the bath's, less (omega dt)^2/4 of each phonon (Leimkuhler and Matthews 2013, doi:10.1063/1.4802990)",
+                ),
+                _ => temperature.check(
+                    "temperature",
+                    self.state.temperature,
+                    "the thermostat's (Bussi, Donadio and Parrinello 2007, doi:10.1063/1.2408420)",
+                ),
+            },
         ];
         // A series too short for its own correlations has no error to be judged by.
         checks.into_iter().zip(blocks).filter(|(_, blocked)| blocked.plateau).map(|(check, _)| check).collect()

@@ -6,6 +6,7 @@ mod displaced;
 mod dust;
 mod fate;
 mod line;
+mod lyapunov;
 mod orbits;
 mod orders;
 mod parameters;
@@ -31,6 +32,7 @@ use conservation::{Frame, Run};
 use dust::Parting;
 use fate::Fate;
 use line::Line;
+use lyapunov::Lyapunov;
 use orders::Orders;
 use restricted::Restricted;
 use start::{PRECISE, Start};
@@ -67,6 +69,7 @@ struct Aside {
     triangles: Vec<Triangle>,
     line: Option<Line>,
     burrau: Option<Run>,
+    lyapunov: Option<Lyapunov>,
 }
 
 struct ThreeBody {
@@ -161,7 +164,7 @@ impl ThreeBody {
     fn measure_aside(&self) -> Result<Aside, Failure> {
         let preset = self.start.preset.as_str();
         let (all, eight) = (preset == "paper", preset == "figure-eight");
-        let mut aside = Aside { orders: None, closure: None, triangles: vec![], line: None, burrau: None };
+        let mut aside = Aside { orders: None, closure: None, triangles: vec![], line: None, burrau: None, lyapunov: None };
         if all || eight {
             aside.orders = Some(Orders::measure(self.seed)?);
         }
@@ -182,6 +185,10 @@ impl ThreeBody {
         }
         if preset == "euler" {
             aside.line = Some(Line::measure(self.start.masses(), self.seed)?);
+        }
+        // The Moon's distance is not the length of the Sun's system, by which twins are apart.
+        if self.start.magnified.is_none() {
+            aside.lyapunov = Some(Lyapunov::measure(&self.start, self.seed)?);
         }
         Ok(aside)
     }
@@ -289,6 +296,7 @@ impl Simulation for ThreeBody {
                 charts.push(first.chart(others.first()));
             }
             charts.extend(aside.line.as_ref().map(Line::chart));
+            charts.extend(aside.lyapunov.as_ref().map(Lyapunov::chart));
         }
         charts.push(self.chart_of_energy());
         charts
@@ -307,6 +315,7 @@ impl Simulation for ThreeBody {
             checks.extend(aside.closure.map(report::check_of_closure));
             checks.extend(aside.triangles.iter().map(Triangle::check));
             checks.extend(aside.line.as_ref().map(Line::check));
+            checks.extend(aside.lyapunov.iter().flat_map(Lyapunov::checks));
             if let Some(burrau) = &aside.burrau {
                 checks.extend(Fate::checks_of_burrau(burrau.engine.particles(), 1.0, burrau.engine.time()));
             }

@@ -7,6 +7,7 @@
 
 mod chain;
 mod charts;
+mod friction;
 mod initial;
 mod membrane;
 mod nonlinear;
@@ -14,6 +15,7 @@ mod parameters;
 mod picture;
 mod sine;
 mod spectra;
+mod sponge;
 mod theory;
 mod trials;
 mod verdicts;
@@ -28,6 +30,7 @@ use corpuscle_time::{Integrator, Signal};
 
 use crate::{Action, Experiment, Frame, Honesty, Settings, Simulation, Table, ensemble};
 use chain::{Chain, Design, End, Ends, Polarisation};
+use friction::Braked;
 use membrane::Membrane;
 use nonlinear::Nonlinear;
 use spectra::Spectra;
@@ -110,6 +113,7 @@ fn start(settings: &Settings) -> Result<Box<dyn Simulation>, Invalid> {
     Ok(match name.as_str() {
         "fermi-pasta" | "solitons" => Box::new(Nonlinear::new(&settings)?),
         "dispersion" => Box::new(Spectra::new(&settings)?),
+        "matched-end" | "damped-mode" | "resonance" => Box::new(Braked::new(&settings)?),
         "two-sources" | "double-slit" | "single-slit" | "doppler" => Box::new(Membrane::new(&settings)?),
         _ => Box::new(Wave::new(&settings)?),
     })
@@ -147,7 +151,7 @@ impl Wave {
         };
         let masses = (0..count).map(|n| if n < count / 2 { mass } else { mass * ratio }).collect();
         let integrator = Integrator::from_name(settings.word("integrator"), time_step)?;
-        let design = Design { masses, stiffness, spacing, polarisation, ends, integrator };
+        let design = Design { masses, stiffness, spacing, polarisation, ends, integrator, friction: vec![] };
         let limit = 2.0 / design.highest_frequency();
         if time_step >= limit {
             return Err(settings.invalid("time_step", format!("less than 2 over the highest frequency, {limit}")));

@@ -8,6 +8,7 @@ use corpuscle_observe::{Chart, Scale, Series, Style};
 
 use super::axis::Range;
 use super::html::escape;
+use super::residuals::{self, Residuals};
 use crate::number::{significant, superscript};
 
 const WIDTH: f64 = 640.0;
@@ -20,24 +21,31 @@ const CHARACTER: f64 = 6.9;
 const TITLE: f64 = 34.0;
 const LEGEND_ROW: f64 = 20.0;
 const Y_TICKS: usize = 6;
+/// Height of the residuals below a chart, and of the gap between them.
+const RESIDUALS: f64 = 84.0;
+const GAP: f64 = 12.0;
 
-/// The chart as one `<svg>` element.
+/// Height of the whole drawing, in user units; its width is always the same.
+pub(super) fn height(chart: &Chart) -> f64 {
+    HEIGHT + if residuals::of(chart).is_empty() { 0.0 } else { GAP + RESIDUALS }
+}
+
+/// The chart as one `<svg>` element, with the residuals of what is measured below it where theory is known.
 pub(super) fn svg(chart: &Chart) -> String {
-    let looks = looks(&chart.series);
+    let looks = looks(chart);
     let y = ordinate_range(chart);
     let left = TITLE + CHARACTER * longest(&y).max(4) as f64;
     let (legend, legend_height) = legend(chart, &looks, left);
     let frame = Frame::new(chart, y, left, legend_height + 12.0);
+    let residuals = residuals::of(chart);
+    let whole = height(chart);
     let mut out = format!(
-        "<svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"{}\">{legend}",
+        "<svg viewBox=\"0 0 {WIDTH} {whole}\" role=\"img\" aria-label=\"{}\">{legend}",
         escape(&format!("{}: {} against {}", chart.title, chart.y.label, chart.x.label))
     );
-    frame.axes(chart, &mut out);
-    let _ = write!(
-        out,
-        "<svg x=\"{0:.1}\" y=\"{1:.1}\" width=\"{2:.1}\" height=\"{3:.1}\" viewBox=\"{0:.1} {1:.1} {2:.1} {3:.1}\">",
-        frame.left, frame.top, frame.width, frame.height
-    );
+    let ordinate = |range: &Range| axis_title(&chart.y.label, &chart.y.unit, range.ticks(Y_TICKS).1);
+    frame.axes(&ordinate(&frame.y), Y_TICKS, residuals.is_empty().then_some(chart), &mut out);
+    frame.clip(&mut out);
     // Theory above bars and bands, points above theory: the measurement is what was done here.
     let layer = |style: Style| match style {
         Style::Bars => 0,
@@ -50,26 +58,32 @@ pub(super) fn svg(chart: &Chart) -> String {
     for index in order {
         frame.series(&chart.series[index], &looks[index], &mut out);
     }
-    out + "</svg></svg>"
+    out += "</svg>";
+    if !residuals.is_empty() {
+        frame.below(&residuals).residuals(chart, &residuals, &looks, &mut out);
+    }
+    out + "</svg>"
 }
 
 /// How the series are told apart, as class names.
-fn looks(series: &[Series]) -> Vec<String> {
-    let is_theory = |series: &&Series| series.style == Style::Theory;
-    // Alternating, theory and measurement belong together in pairs.
-    let paired = series.len() > 2 && series.chunks(2).all(|pair| pair.iter().filter(is_theory).count() == 1 && pair.len() == 2);
+fn looks(chart: &Chart) -> Vec<String> {
+    let lone = chart.before_pairs().unwrap_or(usize::MAX);
     let (mut theory, mut measured) = (0, 0);
     let mut look = |series: &Series| {
         if series.style == Style::Theory {
             theory += 1;
-            // Each theory in the colour of its measurement; a lone one, or an unequal number, in ink with dashes.
-            if paired { format!("theory c{}", (theory - 1) % 8) } else { format!("theory ink dash{}", (theory - 1) % 4) }
+            // Each theory in the colour of its measurement; those that have none in ink with dashes.
+            if theory > lone {
+                format!("theory c{}", (theory - lone - 1) % 8)
+            } else {
+                format!("theory ink dash{}", (theory - 1) % 4)
+            }
         } else {
             measured += 1;
             format!("c{}", (measured - 1) % 8)
         }
     };
-    series.iter().map(&mut look).collect()
+    chart.series.iter().map(&mut look).collect()
 }
 
 /// The legend, wrapped into rows, and its height; empty for a single series.
@@ -98,6 +112,7 @@ fn legend(chart: &Chart, looks: &[String], left: f64) -> (String, f64) {
 }
 
 /// The rectangle the series are drawn in, and its axes.
+#[derive(Clone, Copy)]
 struct Frame {
     left: f64,
     top: f64,
@@ -121,24 +136,69 @@ impl Frame {
         self.top + (1.0 - place) * self.height
     }
 
-    fn axes(&self, chart: &Chart, out: &mut String) {
+    /// What follows is cut off at the edges of the rectangle.
+    fn clip(&self, out: &mut String) {
+        let Self { left, top, width, height, .. } = self;
+        let _ = write!(
+            out,
+            "<svg x=\"{left:.1}\" y=\"{top:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" \
+             viewBox=\"{left:.1} {top:.1} {width:.1} {height:.1}\">"
+        );
+    }
+
+    /// The frame for residuals below this one: the same abscissa, an ordinate about zero.
+    fn below(&self, residuals: &[Residuals]) -> Self {
+        let largest =
+            residuals.iter().flat_map(|residuals| &residuals.points).fold(3.0, |most: f64, point| most.max(point.1.abs()));
+        let y = Range::of(Scale::Linear, [-largest, largest].into_iter(), 0.08);
+        Self { top: self.top + self.height + GAP, height: RESIDUALS, y, ..*self }
+    }
+
+    /// Dots about zero, with a band of one standard error.
+    fn residuals(&self, chart: &Chart, residuals: &[Residuals], looks: &[String], out: &mut String) {
+        self.axes("residual (σ)", 3, Some(chart), out);
+        self.clip(out);
+        let down = |value: f64| self.y.place(value).map_or(self.top, |place| self.down(place));
+        let (left, right, width) = (self.left, self.left + self.width, self.width);
+        let (top, zero, bottom) = (down(1.0), down(0.0), down(-1.0));
+        let _ = write!(
+            out,
+            "<rect class=\"one\" x=\"{left:.1}\" y=\"{top:.1}\" width=\"{width:.1}\" height=\"{:.1}\"/>\
+             <path class=\"line theory ink\" d=\"M{left:.1} {zero:.1}H{right:.1}\"/>",
+            bottom - top
+        );
+        for Residuals { series, points } in residuals {
+            let radius = if points.len() > 60 { 1.6 } else { 2.6 };
+            let _ = write!(out, "<g class=\"points {}\">", looks[*series]);
+            for &(x, y) in points.iter().step_by(points.len().div_ceil(2000)) {
+                let Some((px, py)) = self.point(x, y) else { continue };
+                let _ = write!(out, "<circle class=\"dot\" cx=\"{px:.1}\" cy=\"{py:.1}\" r=\"{radius}\"/>");
+            }
+            *out += "</g>";
+        }
+        *out += "</svg>";
+    }
+
+    /// Grid and axes; the abscissa has texts where it is given the chart they stand in.
+    fn axes(&self, ordinate: &str, y_ticks: usize, abscissa: Option<&Chart>, out: &mut String) {
         let (left, bottom) = (self.left, self.top + self.height);
         let (x_ticks, x_exponent) = self.x.ticks(7);
         for tick in x_ticks {
             let Some(x) = self.x.place(tick.value).map(|place| self.left + place * self.width) else { continue };
             let _ = match tick.text {
-                Some(text) => write!(
-                    out,
-                    "<path class=\"grid\" d=\"M{x:.1} {:.1}V{bottom:.1}\"/><text class=\"tick\" x=\"{x:.1}\" y=\"{:.1}\" \
-                     text-anchor=\"middle\">{text}</text>",
-                    self.top,
-                    bottom + 18.0
-                ),
+                Some(text) => {
+                    let _ = write!(out, "<path class=\"grid\" d=\"M{x:.1} {:.1}V{bottom:.1}\"/>", self.top);
+                    if abscissa.is_some() {
+                        let y = bottom + 18.0;
+                        write!(out, "<text class=\"tick\" x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\">{text}</text>")
+                    } else {
+                        Ok(())
+                    }
+                }
                 None => write!(out, "<path class=\"minor\" d=\"M{x:.1} {bottom:.1}v-4\"/>"),
             };
         }
-        let (y_ticks, y_exponent) = self.y.ticks(Y_TICKS);
-        for tick in y_ticks {
+        for tick in self.y.ticks(y_ticks).0 {
             let Some(y) = self.y.place(tick.value).map(|place| self.down(place)) else { continue };
             let _ = match tick.text {
                 Some(text) => write!(
@@ -155,16 +215,20 @@ impl Frame {
         let _ = write!(
             out,
             "<path class=\"axis\" d=\"M{left:.1} {:.1}V{bottom:.1}h{:.1}\"/>\
-             <text class=\"label\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>\
-             <text class=\"label\" transform=\"translate(16 {:.1}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
+             <text class=\"label\" transform=\"translate(16 {:.1}) rotate(-90)\" text-anchor=\"middle\">{ordinate}</text>",
             self.top,
             self.width,
-            left + 0.5 * self.width,
-            HEIGHT - 8.0,
-            axis_title(&chart.x.label, &chart.x.unit, x_exponent),
             self.top + 0.5 * self.height,
-            axis_title(&chart.y.label, &chart.y.unit, y_exponent),
         );
+        if let Some(chart) = abscissa {
+            let _ = write!(
+                out,
+                "<text class=\"label\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
+                left + 0.5 * self.width,
+                bottom + BOTTOM - 8.0,
+                axis_title(&chart.x.label, &chart.x.unit, x_exponent),
+            );
+        }
     }
 
     fn series(&self, series: &Series, look: &str, out: &mut String) {

@@ -103,19 +103,18 @@ pub(super) struct Face {
     pub dash: usize,
 }
 
-/// A face for each series: each theory in the colour of its measurement when there are as many of either; in ink otherwise.
+/// A face for each series: each theory in the colour of its measurement where they come in pairs; in ink otherwise.
 pub(super) fn faces(chart: &Chart, theme: Theme) -> Vec<Face> {
-    let theories = chart.series.iter().filter(|series| series.style == Style::Theory).count();
-    let alternates =
-        chart.series.chunks(2).all(|pair| pair.len() == 2 && pair[0].style == Style::Theory && pair[1].style != Style::Theory);
-    let paired = theories > 1 && alternates;
+    let lone = chart.before_pairs().unwrap_or(usize::MAX);
     let (mut theory, mut measured) = (0, 0);
     let next = |count: &mut usize| std::mem::replace(count, *count + 1);
     let face = |series: &Series| {
         if series.style == Style::Theory {
             let place = next(&mut theory);
-            let colour = if paired { accent(place, theme) } else { theme.colours().ink };
-            Face { colour, dash: if paired { 0 } else { place } }
+            match place.checked_sub(lone) {
+                Some(pair) => Face { colour: accent(pair, theme), dash: 0 },
+                None => Face { colour: theme.colours().ink, dash: place },
+            }
         } else {
             Face { colour: accent(next(&mut measured), theme), dash: 0 }
         }

@@ -147,7 +147,7 @@ impl Simulation for Restricted {
             let (position, velocity) = (now.r.to_three(), now.v.to_three());
             scene.bodies.push(Body { position, velocity, time: now.time, radius: 0.012 * HALF, shade: f64::from(colour) });
             let trail = scene.trail(number as u32, KEPT, Colour::Accent(colour));
-            trail.width = 1.0;
+            (trail.width, trail.colour) = (1.0, Colour::Accent(colour));
             let seen = trail.points().back().map_or(f64::NEG_INFINITY, |point| point.time);
             for state in orbit.path.iter().filter(|state| state.time > seen) {
                 trail.push(TrailPoint { position: state.r.to_three(), time: state.time });

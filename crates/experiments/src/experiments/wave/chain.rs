@@ -6,8 +6,9 @@
 
 use corpuscle_checkpoint::resume;
 use corpuscle_core::{Axis, Boundary, Engine, Failure, Invalid, Particles, Vector};
-use corpuscle_time::{Drive, Integrator, Pin, Signal, Spring, Springs, TimeDriven};
+use corpuscle_time::{Drive, Force, Integrator, Pin, Signal, Spring, Springs, TimeDriven};
 
+use super::sponge::Sponge;
 use crate::Frame;
 
 /// Direction of the displacements.
@@ -58,6 +59,8 @@ pub(super) struct Design {
     pub(super) polarisation: Polarisation,
     pub(super) ends: Ends,
     pub(super) integrator: Integrator,
+    /// Rate `gamma_n` of the friction `-m gamma_n du_n/dt` on each mass; none where there are no more.
+    pub(super) friction: Vec<f64>,
 }
 
 impl Design {
@@ -175,9 +178,11 @@ impl Chain {
         let rest_length = if design.polarisation == Polarisation::Longitudinal { design.spacing } else { 0.0 };
         let bonds = design.bonds();
         let springs = bonds.iter().map(|&(i, j)| Spring::new(i, j, design.stiffness, rest_length)).collect();
-        let engine = TimeDriven::new(boundary, particles, vec![Box::new(Springs::new(springs))], design.integrator)?
-            .with_pins(pins)?
-            .with_drives(drives)?;
+        let mut forces: Vec<Box<dyn Force<2>>> = vec![Box::new(Springs::new(springs))];
+        if !design.friction.is_empty() {
+            forces.push(Box::new(Sponge { rates: design.friction.clone() }));
+        }
+        let engine = TimeDriven::new(boundary, particles, forces, design.integrator)?.with_pins(pins)?.with_drives(drives)?;
         Ok(Self { design, engine, rest, bonds })
     }
 

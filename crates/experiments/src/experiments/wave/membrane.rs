@@ -15,8 +15,9 @@ use corpuscle_observe::{Chart, Check, Series, Style, spectrum};
 use corpuscle_scene::{Camera, Cell, Colour, Colouring, Line, Map, Scene};
 use corpuscle_time::{Force, Integrator, Pin, Spring, Springs, TimeDriven};
 
+use super::sponge::Sponge;
 use crate::{Frame, Honesty, Settings, Simulation};
-use parts::{Sources, Sponge};
+use parts::Sources;
 
 /// Masses along and across.
 const COLUMNS: usize = 250;

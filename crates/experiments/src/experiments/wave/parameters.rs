@@ -17,6 +17,9 @@ pub(super) static PARAMETERS: &[Parameter] = &[
                 "standing-wave",
                 "shaker",
                 "longitudinal",
+                "matched-end",
+                "damped-mode",
+                "resonance",
                 "dispersion",
                 "fermi-pasta",
                 "solitons",
@@ -122,6 +125,18 @@ pub(super) static PARAMETERS: &[Parameter] = &[
         kind: Kind::Real { default: 0.0, least: 0.0, most: 1e9 },
     },
     Parameter {
+        name: "end_impedance",
+        unit: "sqrt(T mu)",
+        help: "matched-end: impedance of the damper at the right end, over that of the string; at 1 nothing comes back.",
+        kind: Kind::Real { default: 1.0, least: 0.0, most: 100.0 },
+    },
+    Parameter {
+        name: "damping",
+        unit: "sqrt(stiffness/mass)",
+        help: "damped-mode and resonance: rate gamma of the friction -m gamma v on every mass.",
+        kind: Kind::Real { default: 0.02, least: 0.005, most: 2.0 },
+    },
+    Parameter {
         name: "nonlinearity",
         unit: "1/length",
         help: "fermi-pasta: alpha of the springs' tension, stiffness times (x + alpha x^2).",
@@ -162,12 +177,14 @@ pub(super) static PARAMETERS: &[Parameter] = &[
 /// What each preset changes of the defaults, as one would write it on the command line.
 pub(super) fn preset(name: &str) -> &'static [(&'static str, &'static str)] {
     match name {
-        "fixed-end" => &[("density_ratio", "1")],
+        "fixed-end" | "matched-end" => &[("density_ratio", "1")],
         "free-end" => &[("density_ratio", "1"), ("ends", "free")],
         "ring" => &[("density_ratio", "1"), ("ends", "periodic")],
         "standing-wave" => &[("density_ratio", "1"), ("start", "mode"), ("masses", "60")],
         "shaker" => &[("density_ratio", "1"), ("start", "drive")],
         "longitudinal" => &[("polarisation", "longitudinal")],
+        "damped-mode" => &[("density_ratio", "1"), ("masses", "60")],
+        "resonance" => &[("density_ratio", "1"), ("masses", "30"), ("mode", "2")],
         "dispersion" => &[("masses", "96"), ("density_ratio", "1")],
         "fermi-pasta" => &[("masses", "31"), ("mode", "1"), ("density_ratio", "1")],
         "solitons" => &[("masses", "300"), ("density_ratio", "1")],

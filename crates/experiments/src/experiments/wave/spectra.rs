@@ -53,6 +53,7 @@ impl Spectra {
             polarisation: Polarisation::Transverse,
             ends: Ends::Ring,
             integrator: Integrator::VelocityVerlet { dt },
+            friction: vec![],
         };
         let Some(modes) = Modes::of(&design).filter(|modes| modes.highest() >= 4) else {
             return Err(settings.invalid("masses", "at least ten of them"));

@@ -52,7 +52,8 @@ impl Material {
 
     fn design(&self, masses: Vec<f64>, ends: Ends, dt: f64) -> Design {
         let integrator = Integrator::VelocityVerlet { dt };
-        Design { masses, stiffness: self.stiffness, spacing: self.spacing, polarisation: self.polarisation, ends, integrator }
+        let Self { stiffness, spacing, polarisation, .. } = *self;
+        Design { masses, stiffness, spacing, polarisation, ends, integrator, friction: vec![] }
     }
 
     /// Largest coordinate that gets rounded, over the amplitude.

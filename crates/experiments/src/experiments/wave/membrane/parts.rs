@@ -52,37 +52,3 @@ impl Force<1> for Sources {
         1.0 / self.angular_frequency
     }
 }
-
-/// Friction `a = -gamma_i v` that grows towards an edge, so slowly that nothing turns back: a matched end in all directions.
-#[derive(Clone, Debug)]
-pub(super) struct Sponge {
-    pub(super) rates: Vec<f64>,
-}
-
-impl Force<1> for Sponge {
-    fn name(&self) -> &'static str {
-        "sponge"
-    }
-
-    fn accelerate(&mut self, _: f64, _: &Boundary<1>, particles: &Particles<1>, acceleration: &mut [Vector<1>]) {
-        for ((a, v), rate) in acceleration.iter_mut().zip(&particles.velocity).zip(&self.rates) {
-            *a -= *v * *rate;
-        }
-    }
-
-    fn energy(&self, _: f64, _: &Boundary<1>, _: &Particles<1>) -> f64 {
-        0.0
-    }
-
-    fn virial(&self, _: f64, _: &Boundary<1>, _: &Particles<1>) -> f64 {
-        0.0
-    }
-
-    fn validate(&self, _: &Boundary<1>, _: &Particles<1>) -> Result<(), Invalid> {
-        Ok(())
-    }
-
-    fn depends_on_velocity(&self) -> bool {
-        true
-    }
-}
