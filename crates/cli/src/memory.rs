@@ -37,7 +37,8 @@ fn particles(scenario: &Scenario) -> f64 {
     let all = |keys: &[&str]| keys.iter().filter_map(|key| whole(key)).sum::<f64>();
     // Of an experiment with a sweep, each point is a system; of one without replicas, there is one.
     let points = whole("points").map_or(2.0, |points| 3.0 * points);
-    let kinds = if value("sweep").is_none() || is("sweep", "none") { 1.0 } else { length("masses").max(length("radii")) };
+    let sweeps = [("mass", "masses"), ("radius", "radii")];
+    let kinds = sweeps.iter().find(|(word, _)| is("sweep", word)).map_or(1.0, |(_, list)| length(list));
     let systems = whole("replicas").unwrap_or(1.0) * points * kinds;
     // A cell of a map is a grain of a few numbers.
     let cells = if is("show", "basins") { whole("resolution").map_or(0.0, |side| side * side * CELL / PARTICLE) } else { 0.0 };

@@ -210,11 +210,11 @@ mod tests {
         fn run(self) -> [f64; 8] {
             let mut rates = [0.0; 8];
             for [x, y, u, w] in self.centres {
-                for lane in 0..8 {
+                for (lane, rate) in rates.iter_mut().enumerate() {
                     let (x, y) = (x - self.place[0][lane], y - self.place[1][lane]);
                     let (u, w) = (u - self.velocity[0][lane], w - self.velocity[1][lane]);
                     let d2 = x * x + y * y;
-                    rates[lane] = larger((u * u + w * w + 1.0 / d2.sqrt()) / d2, rates[lane]);
+                    *rate = larger((u * u + w * w + 1.0 / d2.sqrt()) / d2, *rate);
                 }
             }
             rates
