@@ -100,7 +100,9 @@ mod tests {
     fn all_that_an_experiment_puts_somewhere_is_counted() {
         let needed = |name: &str, values: &[(&str, &str)]| {
             let mut scenario = Scenario::new(corpuscle_experiments::find(name).unwrap());
-            values.iter().for_each(|(key, text)| scenario.set(key, text).unwrap());
+            for (key, text) in values {
+                scenario.set(key, text).unwrap();
+            }
             needed(&scenario)
         };
         assert!(needed("atmosphere", &[("particles", "1"), ("heavy_particles", "20000"), ("replicas", "1000")]) > 20e9);

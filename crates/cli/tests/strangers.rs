@@ -173,7 +173,7 @@ fn a_report_takes_in_nothing_private() {
     let ended = output(folder.path(), &first);
     let said = complaint(&ended);
     if said.contains("pictures are left out") {
-        eprintln!("{}", "no OpenGL here: no pictures to replace");
+        eprintln!("no OpenGL here: no pictures to replace");
         return;
     }
     let (private, picture) = (folder.path().join("private"), folder.path().join("out/pictures/01.png"));

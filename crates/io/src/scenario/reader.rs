@@ -30,8 +30,8 @@ impl Reader<'_> {
         }
         let mut origins = BTreeMap::new();
         self.collect("", document.get_ref(), &mut origins);
-        let system =
-            free::System::deserialize(toml::de::Deserializer::from(document)).map_err(|error| self.refused("system", &error))?;
+        let system = free::System::deserialize(toml::de::Deserializer::from(document))
+            .map_err(|error| self.refused("system", &origins, &error))?;
         let scenario = Scenario::of(Subject::Free(Box::new(system)), Settings::new(&[], seed));
         let mut scenario = Scenario { file: Origin::File(self.path.into(), None), origins, ..scenario };
         if let Subject::Free(system) = &mut scenario.subject
@@ -49,17 +49,23 @@ impl Reader<'_> {
     pub(super) fn deeds(&self, value: Spanned<DeValue>, origins: &mut BTreeMap<String, Origin>) -> Result<Vec<Deed>, Refusal> {
         self.collect_items("deed", value.get_ref(), origins);
         origins.insert("deed".into(), self.origin(&value));
-        Vec::deserialize(toml::de::ValueDeserializer::from(value)).map_err(|error| self.refused("deed", &error))
+        Vec::deserialize(toml::de::ValueDeserializer::from(value)).map_err(|error| self.refused("deed", origins, &error))
     }
 
-    /// What serde says against a file, with its place.
-    fn refused(&self, key: &str, error: &toml::de::Error) -> Refusal {
+    /// What serde says against the whole or a part of it, with its place and the key that stands there.
+    fn refused(&self, whole: &str, origins: &BTreeMap<String, Origin>, error: &toml::de::Error) -> Refusal {
         let place = error.span().map(|span| Place::of(self.text, span.start));
         let found = error.span().map_or_else(|| "(incomplete)".into(), |span| quoted(self.text, span));
-        let invalid = match unknown_word(error.message()) {
+        let key = place.as_ref().and_then(|place| nearest(origins, place)).unwrap_or(whole);
+        let message = error.message().replace('\n', "; ");
+        let invalid = match unknown_word(&message) {
             Some((true, word, known)) => Invalid::new(word, "(an unknown key)", one_of(word, known)),
             Some((false, word, known)) => Invalid::new(key, found, one_of(word, known)),
-            None => Invalid::new(key, found, error.message().replace('\n', "; ")),
+            None => match message.strip_prefix("missing field `").and_then(|rest| rest.strip_suffix('`')) {
+                Some(missing) if key == whole => Invalid::new(missing, "(missing)", "a value: this key is needed"),
+                Some(missing) => Invalid::new(format!("{key}.{missing}"), "(missing)", "a value: this key is needed"),
+                None => Invalid::new(key, found, what_was_expected(&message)),
+            },
         };
         Refusal::new(Origin::File(self.path.into(), place), invalid)
     }
@@ -133,6 +139,35 @@ pub(super) fn value_of(value: &DeValue) -> Option<Value> {
         DeValue::Boolean(flag) => Some(Value::Flag(*flag)),
         DeValue::Array(items) => items.iter().map(|item| real(item.get_ref())).collect::<Option<_>>().map(Value::List),
         DeValue::Table(_) | DeValue::Datetime(_) => None,
+    }
+}
+
+/// The key whose value begins at this place, or is the last to begin before it: an item of a list has none of its own.
+fn nearest<'a>(origins: &'a BTreeMap<String, Origin>, place: &Place) -> Option<&'a str> {
+    let before = origins.iter().filter_map(|(key, origin)| match origin {
+        Origin::File(_, Some(begins)) if (begins.line, begins.column) <= (place.line, place.column) => {
+            Some(((begins.line, begins.column, key.len()), key.as_str()))
+        }
+        _ => None,
+    });
+    before.max().map(|(_, key)| key)
+}
+
+/// What serde expected, in the words of a person.
+fn what_was_expected(message: &str) -> String {
+    let Some((_, expected)) = message.split_once(", expected ").filter(|_| message.starts_with("invalid ")) else {
+        return message.to_owned();
+    };
+    match expected {
+        "f64" => "a number".into(),
+        "a string" => "text, in quotes".into(),
+        "a boolean" => "true or false".into(),
+        "a sequence" => "a list".into(),
+        word if word.starts_with('u') && word[1..].chars().all(|c| c.is_ascii_digit() || "size".contains(c)) => {
+            "a whole number, zero or more".into()
+        }
+        word if word.starts_with("struct ") => "a table".into(),
+        other => other.to_owned(),
     }
 }
 

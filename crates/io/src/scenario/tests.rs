@@ -92,10 +92,10 @@ fn deeds_are_read_written_and_refused_in_their_place() {
     }
     let line = GAS.lines().count() + 2;
     for (deed, message) in [
-        ("at = 0.5\nact = 'revers'", format!(":{}:7: deed = 'revers': expected one of reverse, ", line + 1)),
+        ("at = 0.5\nact = 'revers'", format!(":{}:7: deed[0].act = 'revers': expected one of reverse, ", line + 1)),
         ("at = 0.5\nact = 'reverse'\nhow = 1", format!(":{}:1: how = (an unknown key): expected one of at, act", line + 2)),
-        ("at = 'soon'\nact = 'reverse'", format!(":{line}:6: deed = 'soon': expected ")),
-        ("act = 'reverse'", format!(":{}:1: deed = [[deed]]: expected missing field `at`", line - 1)),
+        ("at = 'soon'\nact = 'reverse'", format!(":{line}:6: deed[0].at = 'soon': expected a number")),
+        ("act = 'reverse'", format!(":{}:1: deed[0].at = (missing): expected a value: this key is needed", line - 1)),
         ("at = 0.5\nact = { throw = { body = -1, velocity = [0.0, 0.0, 0.0] } }", format!(":{}:", line + 1)),
     ] {
         let refusal = refused(&format!("{GAS}[[deed]]\n{deed}\n"));
@@ -202,17 +202,17 @@ fn a_system_of_its_own_is_read_written_and_located() {
     assert_eq!(simulation.time(), 0.5);
     for (from, to, message) in [
         ("radius = 0.3", "radius = -0.3", ":12:10: species[0].radius = -0.3: expected"),
-        ("radius = 0.3", "radius = \"big\"", ":12:10: system = \"big\": expected invalid type"),
+        ("radius = 0.3", "radius = \"big\"", ":12:10: species[0].radius = \"big\": expected a number"),
         ("count = 5", "cuont = 5", ":11:1: cuont = (an unknown key): expected one of name, count,"),
         ("radius = 0.3", "raduis = 0.3", ":12:1: raduis = (an unknown key): expected one of"),
         ("radius = 0.3", "raduis = 0.3", "did you mean `radius`?"),
-        ("\"walls\"", "\"wals\"", ":8:9: system = \"wals\": expected one of periodic, walls, open; did you mean `walls`?"),
+        ("\"walls\"", "\"wals\"", ":8:9: box.faces = \"wals\": expected one of periodic, walls, open; did you mean `walls`?"),
         ("\"walls\"", "[\"walls\", \"wals\"]", "did you mean `walls`?"),
-        ("\"walls\"", "3", ":8:9: system = 3: expected "),
+        ("\"walls\"", "3", ":8:9: box.faces = 3: expected one of periodic, walls, open"),
         ("faces = ", "facse = ", "did you mean `faces`?"),
-        ("\"event\"", "\"evnt\"", ":2:10: system = \"evnt\": expected one of event, time; did you mean `event`?"),
+        ("\"event\"", "\"evnt\"", ":2:10: engine = \"evnt\": expected one of event, time; did you mean `event`?"),
         ("seed = 9", "seed = -9", ":1:8: seed = -9: expected a whole number"),
-        ("\"event\"", "\"magic\"", ":2:10: system = \"magic\": expected one of event, time"),
+        ("\"event\"", "\"magic\"", ":2:10: engine = \"magic\": expected one of event, time"),
     ] {
         let refusal = parse(&FREE.replace(from, to)).and_then(|scenario| scenario.start().map(|_| ())).unwrap_err().to_string();
         assert!(refusal.contains(message), "{refusal}\nnot {message}");
