@@ -241,7 +241,7 @@ fn systems_that_cannot_be() {
         ),
         (
             "[collisions.viscoelastic]\nstiffness = 1.0\n",
-            ["scenario.toml:10:1", "[collisions.viscoelastic]", "missing field `dissipation_time`"],
+            ["scenario.toml:10:1", "collisions.viscoelastic.dissipation_time = (missing)", "this key is needed"],
         ),
         ("[growth]\nrate = 7.0\n", ["scenario.toml:11:8", "growth.rate = 7", "a number from 0.0001 to 1"]),
     ] {

@@ -54,6 +54,21 @@ pub(super) fn first_key(system: &System) -> Option<&'static str> {
     tables.into_iter().find(|(_, empty)| !empty).map(|(key, _)| key)
 }
 
+/// Key of the table that a bond comes from, by its number among all of its kind: a table may be a row of them.
+pub(super) fn key_of(system: &System, kind: &str, number: &str) -> String {
+    let counts: Vec<usize> = match kind {
+        "spring" => system.springs.iter().map(|bond| bond.count).collect(),
+        "fene" => system.finite.iter().map(|bond| bond.count).collect(),
+        _ => system.exponential.iter().map(|bond| bond.count).collect(),
+    };
+    let (number, mut end) = (number.parse().unwrap_or(0), 0);
+    let table = counts.iter().position(|count| {
+        end += count;
+        number < end
+    });
+    format!("{kind}[{}]", table.unwrap_or(0))
+}
+
 /// Ends of all bonds, for pictures.
 pub(super) fn all_ends(system: &System) -> Vec<[usize; 2]> {
     let springs = system.springs.iter().map(|bond| (bond.first, bond.second, bond.count));

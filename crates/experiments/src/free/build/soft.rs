@@ -46,7 +46,7 @@ pub(super) fn time_driven<const D: usize>(
         all.push(("field", Box::new(UniformField::new(uniform))));
     }
     for (table, force) in &all {
-        force.validate(&boundary, &particles).map_err(|error| in_table(table, error))?;
+        force.validate(&boundary, &particles).map_err(|error| in_table(system, table, error))?;
     }
     let engine = TimeDriven::new(boundary, particles, all.into_iter().map(|(_, force)| force).collect(), integrator)?;
     let engine = if pins.is_empty() { engine } else { engine.with_pins(pins)? };
@@ -96,12 +96,12 @@ pub(super) fn sine(key: &impl Fn(&str) -> String, numbers: [f64; 4]) -> Result<S
 
 /// The error of a force, which knows its own words, with the key that stands in the file. What it says of particles and of the box is
 /// looked for by [`located`](super::located).
-fn in_table(table: &str, error: Invalid) -> Invalid {
+fn in_table(system: &System, table: &str, error: Invalid) -> Invalid {
     let words: Vec<&str> = error.key.split(' ').collect();
     let key = match words[..] {
         [.., "particle", _] | ["axis" | "uniform", ..] | ["masses"] => return error,
-        ["ends" | "length", "of", "bond", i] => format!("{table}[{i}]"),
-        [.., "of", "spring", i] => format!("{table}[{i}].{}", words[..words.len() - 3].join("_")),
+        ["ends" | "length", "of", "bond", i] => bonds::key_of(system, table, i),
+        [.., "of", "spring", i] => format!("{}.{}", bonds::key_of(system, table, i), words[..words.len() - 3].join("_")),
         _ => {
             let own = words.iter().position(|&word| word == "of").unwrap_or(words.len());
             let key = words[..own].join("_");

@@ -159,6 +159,11 @@ fn a_force_is_refused_by_its_key() {
         ("[[fene]]\nfirst = 0\nsecond = 127\nstiffness = 30.0\nlongest = 1.5\n", "fene[0]"),
         ("[[fene]]\nfirst = 0\nsecond = 1\ncount = 128\nstiffness = 30.0\nlongest = 1.5\n", "fene[0].count"),
         ("[[fene]]\nfirst = 0\nsecond = 1\nstiffness = 30.0\nlongest = 4.0\n", "fene[0].longest"),
+        (
+            "[[spring]]\nfirst = 0\nsecond = 1\ncount = 9\nstiffness = 1.0\n\
+             [[spring]]\nfirst = 20\nsecond = 21\nstiffness = 1.0\nrest_length = 5.0\n",
+            "spring[1].rest_length",
+        ),
         ("[[toda]]\nfirst = 3\nsecond = 3\nstiffness = 1.0\nsteepness = 1.0\nrest_length = 1.0\n", "toda[0].second"),
         ("[[spring]]\nfirst = 0\nsecond = 1\nstiffness = 1.0\nrest_length = 5.0\n", "spring[0].rest_length"),
         ("[[drive]]\nparticle = 0\naxis = 'x'\namplitude = 1.0\nangular_frequency = 1.0\n", "drive[0].axis"),
