@@ -287,6 +287,27 @@ impl<const D: usize> TimeDriven<D> {
 
     /// Goes back to the last good state, and fails.
     fn recover(&mut self, failure: Failure, dt: f64) -> Result<(), Failure> {
+        self.system.patience = 1;
+        let failure = self.first_failure(failure, dt);
+        let outcome = self.go_back(failure, dt);
+        self.system.patience = usize::MAX;
+        outcome
+    }
+
+    /// Steps taken together fail together: taken again one by one, the first that fails tells so.
+    fn first_failure(&mut self, failure: Failure, dt: f64) -> Failure {
+        let reached = self.steps;
+        self.restore();
+        self.time = self.steps as f64 * dt;
+        while self.steps <= reached {
+            if let Err(failure) = self.step_fixed(dt) {
+                return failure;
+            }
+        }
+        failure
+    }
+
+    fn go_back(&mut self, failure: Failure, dt: f64) -> Result<(), Failure> {
         // What went wrong may be a kick put off from the last step.
         let good = self.steps - u64::from(failure.time <= self.time);
         self.restore();

@@ -113,6 +113,14 @@ pub(crate) struct Moves {
     pub(crate) drift: f64,
 }
 
+/// A kick and a drift by accelerations that are found on the way.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stride {
+    pub(crate) moves: Moves,
+    /// The time of the positions it leads to.
+    pub(crate) end: f64,
+}
+
 /// `v += a owed` if anything is, `v += a kick`, then `r += v drift` for all; tells whether every `v` was finite before the second,
 /// and whether every `r` is.
 pub(crate) fn kick_and_drift<const D: usize>(

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::constraint::Held;
 use crate::force::{Force, Springs};
-use crate::motion::{self, Moves};
+use crate::motion::{self, Moves, Stride};
 use crate::threads::{self, CHUNK};
 
 /// State and forces. Scratch arrays live beside what uses them.
@@ -26,6 +26,10 @@ pub(crate) struct System<const D: usize> {
     pub(crate) contacts: Vec<Contact<D>>,
     /// A kick that is still to be done.
     owed: Option<f64>,
+    /// Strides that are still to be taken, before that kick; nobody sees the particles in between.
+    due: Vec<Stride>,
+    /// The most strides that may be due.
+    pub(crate) patience: usize,
     /// What rounding took from the positions, where the integrator knows it; else empty.
     pub(crate) remainder: Vec<Vector<D>>,
     /// Whether positions or velocities may have become something else than finite numbers.
@@ -37,7 +41,7 @@ pub(crate) struct System<const D: usize> {
 resume!(System<const D> {
     values: [boundary, particles, held, acceleration, fresh, owed, remainder],
     // Images are written down by the engine.
-    set_up: [images, forces, contacts, doubtful, velocity_dependent, estimate],
+    set_up: [images, forces, contacts, due, patience, doubtful, velocity_dependent, estimate],
 });
 
 impl<const D: usize> System<D> {
@@ -54,6 +58,8 @@ impl<const D: usize> System<D> {
             fresh: false,
             contacts: vec![],
             owed: None,
+            due: vec![],
+            patience: usize::MAX,
             remainder: vec![],
             doubtful: true,
             velocity_dependent,
@@ -119,6 +125,7 @@ impl<const D: usize> System<D> {
         if self.fresh {
             return;
         }
+        self.catch_up();
         let extrapolate = self.velocity_dependent && lag != 0.0;
         if extrapolate {
             self.estimate.clear();
@@ -164,6 +171,7 @@ impl<const D: usize> System<D> {
     /// Drops what was put off.
     pub(crate) fn forget_owed(&mut self) {
         self.owed = None;
+        self.due.clear();
     }
 
     /// Does what was put off.
@@ -174,19 +182,29 @@ impl<const D: usize> System<D> {
         }
     }
 
-    /// [`accelerate`](Self::accelerate), then [`kick_and_drift`](Self::kick_and_drift), in one sweep where that can be.
-    pub(crate) fn advance(&mut self, time: f64, lag: f64, kick: f64, drift: f64) -> bool {
-        let owed = self.owed;
+    /// [`accelerate`](Self::accelerate), [`kick_and_drift`](Self::kick_and_drift), and [`hold`](Self::hold) at `end`: in one sweep
+    /// where that can be, and several of these in one where that is faster and nobody is to see what is between.
+    pub(crate) fn advance(&mut self, time: f64, lag: f64, kick: f64, drift: f64, end: f64) -> bool {
         if !self.fresh
             && let Some(springs) = sweeping(&self.forces)
         {
-            let [before, now] = springs.sweep(&self.boundary, &mut self.particles, &self.held, Moves { owed, kick, drift });
-            self.owed = None;
-            self.doubtful |= !(before && now);
-            return before;
+            let at_once = springs.strides_at_once(&self.boundary, self.particles.len()).min(self.patience);
+            self.due.push(Stride { moves: Moves { owed: self.owed.take(), kick, drift }, end });
+            return self.due.len() < at_once || self.catch_up();
         }
         self.accelerate(time, lag);
-        self.kick_and_drift(kick, drift)
+        let finite = self.kick_and_drift(kick, drift);
+        self.hold(end);
+        finite
+    }
+
+    /// Takes the strides that are due. Tells whether all velocities were finite at the ends of the steps before.
+    fn catch_up(&mut self) -> bool {
+        let Some(springs) = sweeping(&self.forces).filter(|_| !self.due.is_empty()) else { return true };
+        let [before, now] = springs.sweep(&self.boundary, &mut self.particles, &self.held, &self.due);
+        self.due.clear();
+        self.doubtful |= !(before && now);
+        before
     }
 
     /// `v += a kick`, then `r += v drift`, in one pass. Tells whether the kick put off before, if there was one, left every

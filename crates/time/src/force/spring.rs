@@ -4,14 +4,16 @@ use corpuscle_core::{Axis, Boundary, Instructions, Invalid, Particles, Vector};
 
 mod gather;
 mod lattice;
+mod ring;
 mod run;
 mod scatter;
+mod strides;
 mod sweep;
 
 use super::{Force, Tensor, add_product, finite, massive, not_negative};
 use crate::constraint::Held;
 use crate::image::NearestImage;
-use crate::motion::Moves;
+use crate::motion::{Stride, both};
 use lattice::Lattice;
 use run::{Place, Run, Stretch};
 
@@ -135,19 +137,26 @@ impl Springs {
         self.reach <= FARTHEST && !self.damped
     }
 
-    /// Kicks and drifts by the accelerations at the present positions, zero along coordinates that are held (in the order of their
-    /// particles); tells what [`kick_and_drift`](crate::motion::kick_and_drift) does.
+    /// How many strides of so many particles [`sweep`](Self::sweep) should be given at once, where nobody looks at the particles in between.
+    pub(crate) fn strides_at_once<const D: usize>(&self, boundary: &Boundary<D>, particles: usize) -> usize {
+        let nothing_else = boundary.axes == [Axis::Open; D];
+        self.lattice(boundary).filter(|_| nothing_else).map_or(1, |lattice| lattice.strides_at_once::<D>(particles))
+    }
+
+    /// Takes strides, each by the accelerations at the positions before it; coordinates that are held (in the order of their particles)
+    /// go where they have to be. Tells what [`kick_and_drift`](crate::motion::kick_and_drift) does, of all strides together.
     pub(crate) fn sweep<const D: usize>(
         &self,
         boundary: &Boundary<D>,
         particles: &mut Particles<D>,
         held: &[Held],
-        moves: Moves,
+        strides: &[Stride],
     ) -> [bool; 2] {
-        match self.lattice(boundary) {
-            Some(lattice) => lattice.sweep(particles, held, moves),
-            None => self.scatter(boundary, particles, held, moves),
+        if let Some(lattice) = self.lattice(boundary) {
+            return lattice.sweep(particles, held, strides);
         }
+        let one = |stride: &Stride| self.scatter(boundary, particles, held, *stride);
+        strides.iter().map(one).fold([true; 2], both)
     }
 
     /// The lattice, unless nearest images have to be looked for.

@@ -102,13 +102,13 @@ pub(crate) fn step<const D: usize>(
             system.owe_kick(time, lag, stage.kick * dt);
             continue;
         }
-        if !system.advance(time, lag, stage.kick * dt, stage.drift * dt) {
-            system.check(start)?;
-        }
         drifted += stage.drift;
         let last = stages[number + 1..].iter().all(|stage| stage.drift == 0.0);
-        time = if last { end } else { start + drifted * dt };
-        system.hold(time);
+        let until = if last { end } else { start + drifted * dt };
+        if !system.advance(time, lag, stage.kick * dt, stage.drift * dt, until) {
+            system.check(start)?;
+        }
+        time = until;
         if last {
             let path = if drifts == 1 { Path::Straight } else { Path::Bent { kick: (drifted - kicked) * dt } };
             system.confine(end, dt, path)?;

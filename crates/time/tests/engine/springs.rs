@@ -8,13 +8,17 @@ const BEADS: usize = 16;
 
 /// A string of unit masses and springs between two pinned ends, displaced sideways.
 fn string(displacement: impl Fn(usize) -> f64, integrator: Integrator) -> TimeDriven<2> {
+    string_of(BEADS, displacement, integrator)
+}
+
+fn string_of(count: usize, displacement: impl Fn(usize) -> f64, integrator: Integrator) -> TimeDriven<2> {
     let mut beads = Particles::new();
-    for i in 0..BEADS + 2 {
+    for i in 0..count + 2 {
         beads.push(Vector([i as f64, displacement(i)]), Vector::ZERO, 1.0, 0.0, 0);
     }
-    let springs = (1..BEADS + 2).map(|i| Spring::new(i - 1, i, 1.0, 0.0)).collect();
-    let space = Boundary::new([0.0, -2.0], [17.0, 2.0], Axis::Open);
-    let ends = [0, BEADS + 1].map(|particle| Pin { particle, axes: [true; 2] });
+    let springs = (1..count + 2).map(|i| Spring::new(i - 1, i, 1.0, 0.0)).collect();
+    let space = Boundary::new([0.0, -2.0], [count as f64 + 1.0, 2.0], Axis::Open);
+    let ends = [0, count + 1].map(|particle| Pin { particle, axes: [true; 2] });
     TimeDriven::new(space, beads, vec![Box::new(Springs::new(springs))], integrator).unwrap().with_pins(ends.to_vec()).unwrap()
 }
 
@@ -49,16 +53,21 @@ fn normal_modes_swing_at_verlet_s_frequency() {
 fn too_large_a_step_fails_with_the_last_good_state() {
     let shape = |i: usize| if i.is_multiple_of(2) { 0.1 } else { -0.1 };
     let integrator = Integrator::VelocityVerlet { dt: 1.2 };
-    let mut engine = string(shape, integrator);
-    let failure = engine.advance(1e5, &mut ()).unwrap_err();
-    assert!(failure.cause.contains("smaller dt") && failure.particle.is_some(), "{failure}");
-    assert!(failure.time > engine.time());
-    let state = engine.snapshot();
-    state.validate().unwrap();
-    // The state reported is the one a run up to that time ends with.
-    let mut again = string(shape, integrator);
-    again.advance(engine.time(), &mut ()).unwrap();
-    assert_eq!((again.snapshot(), again.steps()), (state, engine.steps()));
+    // Of the long one several steps are taken together.
+    for count in [BEADS, 40_000] {
+        let mut engine = string_of(count, shape, integrator);
+        let failure = engine.advance(1e5, &mut ()).unwrap_err();
+        assert!(failure.cause.contains("smaller dt") && failure.particle.is_some(), "{failure}");
+        assert!(failure.time > engine.time());
+        let state = engine.snapshot();
+        state.validate().unwrap();
+        // The state reported is the one a run up to that time ends with, and the next step fails.
+        let mut again = string_of(count, shape, integrator);
+        again.advance(engine.time(), &mut ()).unwrap();
+        assert_eq!((again.snapshot() == state, again.steps()), (true, engine.steps()));
+        let next = again.advance(failure.time, &mut ()).unwrap_err();
+        assert_eq!((next.time, next.particle, next.cause), (failure.time, failure.particle, failure.cause));
+    }
 }
 
 /// A driven end is where its signal says at the end of every step, whatever the integrator; the string follows.

@@ -1,7 +1,5 @@
 //! What pulls at the particles of a lattice, four numbers at a time, and what is done with it.
 
-use std::ops::Range;
-
 use corpuscle_core::Vector;
 use corpuscle_core::instructions::prefetch;
 
@@ -94,36 +92,29 @@ impl Sink for Add<'_> {
     fn finish(self, _: [[f64; LANES]; 2]) {}
 }
 
-/// Numbers of some particles, to be changed, and others farther on that will soon be needed.
-pub(super) struct Ahead<'a> {
-    now: &'a mut [f64],
-    later: &'a [f64],
-}
-
-impl<'a> Ahead<'a> {
-    /// Of these particles, and of those `by` farther on.
-    pub(super) fn new<const D: usize>(all: &'a mut [Vector<D>], particles: Range<usize>, by: usize) -> Self {
-        let (now, later) = all.split_at_mut(particles.end);
-        let later = later.get(particles.start + by - particles.end..).unwrap_or(&[]);
-        Self { now: Vector::components_mut(&mut now[particles.start..]), later: Vector::components(later) }
-    }
-}
-
-/// Kicks and drifts, as [`Moves::apply`], and asks for what others will need.
+/// Kicks and drifts, as [`Moves::apply`], and asks for what will soon be needed.
 pub(super) struct Move<'a, const OWED: bool> {
-    position: Ahead<'a>,
-    velocity: Ahead<'a>,
+    /// Where positions go.
+    position: &'a mut [f64],
+    velocity: &'a mut [f64],
+    soon: [&'a [f64]; 2],
     owed: f64,
     kick: f64,
     drift: f64,
-    /// Sums of products with zero: they stay zero unless a factor is infinite or no number. Those of groups are kept in registers.
+    /// Sums of velocities and of positions: finite only if all of them are. Those of groups are kept in registers.
     doubts: [f64; 2],
 }
 
 impl<'a, const OWED: bool> Move<'a, OWED> {
-    pub(super) fn new(position: Ahead<'a>, velocity: Ahead<'a>, moves: Moves) -> Self {
+    pub(super) fn new<const D: usize>(
+        position: &'a mut [Vector<D>],
+        velocity: &'a mut [Vector<D>],
+        soon: [&'a [Vector<D>]; 2],
+        moves: Moves,
+    ) -> Self {
         let Moves { owed, kick, drift } = moves;
-        Self { position, velocity, owed: owed.unwrap_or(0.0), kick, drift, doubts: [0.0; 2] }
+        let (position, velocity) = (Vector::components_mut(position), Vector::components_mut(velocity));
+        Self { position, velocity, soon: soon.map(Vector::components), owed: owed.unwrap_or(0.0), kick, drift, doubts: [0.0; 2] }
     }
 }
 
@@ -132,42 +123,41 @@ impl<const OWED: bool> Sink for Move<'_, OWED> {
     type Output = [bool; 2];
 
     fn len(&self) -> usize {
-        self.position.now.len()
+        self.position.len()
     }
 
     #[inline(always)]
     fn take<V: Lanes>(&mut self, g: usize, r: V, a: V, doubts: &mut [V; 2]) {
         if g.is_multiple_of(LINE / LANES) {
-            prefetch(self.position.later, LANES * g);
-            prefetch(self.velocity.later, LANES * g);
+            prefetch(self.soon[0], LANES * g);
+            prefetch(self.soon[1], LANES * g);
         }
-        let zero = V::splat(0.0);
-        let velocity = &mut self.velocity.now.as_chunks_mut::<LANES>().0[g];
+        let velocity = &mut self.velocity.as_chunks_mut::<LANES>().0[g];
         let mut v = V::new(*velocity);
         if OWED {
             v = v.add(a.mul(V::splat(self.owed)));
-            doubts[0] = doubts[0].add(v.mul(zero));
+            doubts[0] = doubts[0].add(v);
         }
         v = v.add(a.mul(V::splat(self.kick)));
         let r = r.add(v.mul(V::splat(self.drift)));
-        doubts[1] = doubts[1].add(r.mul(zero));
+        doubts[1] = doubts[1].add(r);
         *velocity = v.lanes();
-        self.position.now.as_chunks_mut::<LANES>().0[g] = r.lanes();
+        self.position.as_chunks_mut::<LANES>().0[g] = r.lanes();
     }
 
     #[inline(always)]
     fn take_one(&mut self, n: usize, r: f64, a: f64) {
-        let v = &mut self.velocity.now[n];
+        let v = &mut self.velocity[n];
         if OWED {
             *v += a * self.owed;
-            self.doubts[0] += *v * 0.0;
+            self.doubts[0] += *v;
         }
         *v += a * self.kick;
-        self.position.now[n] = r + *v * self.drift;
-        self.doubts[1] += self.position.now[n] * 0.0;
+        self.position[n] = r + *v * self.drift;
+        self.doubts[1] += self.position[n];
     }
 
     fn finish(self, doubts: [[f64; LANES]; 2]) -> [bool; 2] {
-        [0, 1].map(|when| doubts[when].iter().sum::<f64>() + self.doubts[when] == 0.0)
+        [0, 1].map(|when| (doubts[when].iter().sum::<f64>() + self.doubts[when]).is_finite())
     }
 }

@@ -8,7 +8,7 @@ use corpuscle_core::{Boundary, Particles, Vector};
 use super::sweep::{Sweep, in_parts};
 use super::{NEAR, Place, Springs};
 use crate::constraint::{self, Held};
-use crate::motion::{Moves, both};
+use crate::motion::{Moves, Stride, both};
 
 /// Particles that pass before a window starts anew, at least; and four blocks.
 const WINDOW: usize = 4096;
@@ -20,10 +20,14 @@ impl Springs {
         boundary: &Boundary<D>,
         particles: &mut Particles<D>,
         held: &[Held],
-        moves: Moves,
+        Stride { moves, end }: Stride,
     ) -> [bool; 2] {
-        let Particles { position, velocity, mass, .. } = particles;
-        in_parts(&Scattering { springs: self, boundary, mass, held, moves }, position, velocity, NEAR, self.reach)
+        let Particles { position, velocity, mass, .. } = &mut *particles;
+        let finite = in_parts(&Scattering { springs: self, boundary, mass, held, moves }, position, velocity, NEAR, self.reach);
+        for held in held {
+            held.apply(end, particles);
+        }
+        finite
     }
 }
 
@@ -46,7 +50,7 @@ struct Scattering<'a, const D: usize> {
 impl<const D: usize> Sweep<D> for Scattering<'_, D> {
     type Seam = Seam<D>;
 
-    fn seam(&self, position: &[Vector<D>], at: usize) -> Seam<D> {
+    fn seam(&self, position: &[Vector<D>], _: &[Vector<D>], at: usize) -> Seam<D> {
         let Self { springs, boundary, .. } = *self;
         let from = at - springs.reach.next_multiple_of(NEAR);
         let end = (at + springs.reach).min(position.len());

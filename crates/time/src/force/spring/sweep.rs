@@ -18,7 +18,7 @@ pub(super) trait Sweep<const D: usize>: Sync {
     type Seam: Default + Send + Sync;
 
     /// The seam at particle `at`, where a block begins.
-    fn seam(&self, position: &[Vector<D>], at: usize) -> Self::Seam;
+    fn seam(&self, position: &[Vector<D>], velocity: &[Vector<D>], at: usize) -> Self::Seam;
 
     /// Moves the particles of one part, from particle `from` on, between two seams; tells what
     /// [`kick_and_drift`](crate::motion::kick_and_drift) does.
@@ -48,7 +48,7 @@ pub(super) fn in_parts<const D: usize, S: Sweep<D>>(
         return sweep.part(position, velocity, &S::Seam::default(), &S::Seam::default(), 0);
     }
     let mut seams: Vec<S::Seam> =
-        (length..position.len()).into_par_iter().step_by(length).map(|at| sweep.seam(position, at)).collect();
+        (length..position.len()).into_par_iter().step_by(length).map(|at| sweep.seam(position, velocity, at)).collect();
     seams.insert(0, S::Seam::default());
     seams.push(S::Seam::default());
     let parts = position.par_chunks_mut(length).zip(velocity.par_chunks_mut(length)).zip(seams.par_windows(2)).enumerate();
