@@ -5,6 +5,7 @@
 //! chains beside it measure all modes, echoes from both kinds of end, a row of density steps and a running wave.
 //! Everything here is deterministic and linear, so every bound is derived: from the lattice, the step of time, or rounding.
 
+mod beads;
 mod chain;
 mod charts;
 mod friction;

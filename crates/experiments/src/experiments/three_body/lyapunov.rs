@@ -21,6 +21,7 @@ use corpuscle_time::{Force, Integrator, TimeDriven};
 use super::failure;
 use super::orbits::Orbit;
 use super::start::Start;
+use super::tangent::{pull, tide};
 use crate::ensemble;
 
 /// As for dust among two stars: the tides near a star amplify the rounding that steps are chosen by.
@@ -79,16 +80,11 @@ impl Force<2> for Tides {
             }
             for set in 0..=self.twins {
                 let first = set * self.bodies;
-                let d = arrow(first + i, first + j);
-                let s2 = d.norm_squared() + self.softening * self.softening;
-                acceleration[first + i] += d * (strength / (s2 * s2.sqrt()));
+                acceleration[first + i] += pull(strength, arrow(first + i, first + j), self.softening);
             }
-            let d = arrow(i, j);
-            let s2 = d.norm_squared() + self.softening * self.softening;
             for set in 0..self.deviations {
                 let first = (1 + self.twins + set) * self.bodies;
-                let delta = arrow(first + i, first + j);
-                acceleration[first + i] += (delta - d * (3.0 * d.dot(delta) / s2)) * (strength / (s2 * s2.sqrt()));
+                acceleration[first + i] += tide(strength, arrow(i, j), arrow(first + i, first + j), self.softening);
             }
         }
     }

@@ -3,6 +3,19 @@
 use corpuscle_core::{Boundary, Invalid, Particles, Vector};
 use corpuscle_time::Force;
 
+/// The pull of a mass, `G m d/s^3`, at the end of the arrow `d`, with `s^2 = d^2 + epsilon^2` softened by the length `epsilon`. `strength` is
+/// `G m`.
+pub(super) fn pull(strength: f64, d: Vector<2>, softening: f64) -> Vector<2> {
+    let s2 = d.norm_squared() + softening * softening;
+    d * (strength / (s2 * s2.sqrt()))
+}
+
+/// By how much the [`pull`] changes with a small change `delta` of `d`: `G m (delta - 3 d (d.delta)/s^2)/s^3`.
+pub(super) fn tide(strength: f64, d: Vector<2>, delta: Vector<2>, softening: f64) -> Vector<2> {
+    let s2 = d.norm_squared() + softening * softening;
+    (delta - d * (3.0 * d.dot(delta) / s2)) * (strength / (s2 * s2.sqrt()))
+}
+
 /// Places in the list of particles: two or more stars, then these three.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Places {
@@ -48,13 +61,11 @@ impl Force<2> for Tangent {
         for (k, &mass) in particles.mass.iter().enumerate().take(stars) {
             let strength = constant * mass;
             for i in (0..stars).filter(|&i| i != k).chain([grain, twin]) {
-                let d = arrow(i, k);
-                let d2 = d.norm_squared();
-                acceleration[i] += d * (strength / (d2 * d2.sqrt()));
+                acceleration[i] += pull(strength, arrow(i, k), 0.0);
             }
-            let (d, delta) = (arrow(grain, k), r[deviation] + lost(deviation));
-            let d2 = d.norm_squared();
-            acceleration[deviation] += (d * (3.0 * d.dot(delta) / d2) - delta) * (strength / (d2 * d2.sqrt()));
+            // The star has no deviation.
+            let delta = r[deviation] + lost(deviation);
+            acceleration[deviation] += tide(strength, arrow(grain, k), -delta, 0.0);
         }
     }
 

@@ -14,9 +14,10 @@ use std::f64::consts::TAU;
 use corpuscle_checkpoint::{Resume, resume};
 use corpuscle_core::{Failure, Invalid};
 use corpuscle_observe::{Chart, Check, Schedule};
-use corpuscle_scene::{Body, Camera, Colour, Colouring, Line, Scene};
+use corpuscle_scene::{Colour, Line, Scene};
 use corpuscle_time::Signal;
 
+use super::beads::{self, HEIGHT};
 use super::chain::{Chain, End, Ends};
 use super::theory::{Modes, dispersion, project};
 use crate::{Frame, Honesty, Settings, Simulation, ensemble};
@@ -24,8 +25,7 @@ use trial::{PERIODS, Trial};
 
 /// Samples in the whole run.
 const SAMPLES: usize = 480;
-/// Height of the picture over the length of the chain, and the largest displacement drawn.
-const HEIGHT: f64 = 0.52;
+/// The largest displacement drawn, over the length of the chain.
 const REACH: f64 = 0.19;
 /// Impedances of the ends measured, over that of the string.
 const IMPEDANCES: [f64; 8] = [0.0, 1.0 / 9.0, 0.25, 0.5, 1.0, 2.0, 4.0, 9.0];
@@ -270,14 +270,10 @@ impl Simulation for Braked {
     }
 
     fn draw(&self, scene: &mut Scene) {
-        scene.clear();
         let design = self.chain.design();
         let length = design.length();
-        scene.time = self.chain.time();
+        beads::stage(scene, length, self.chain.time());
         scene.title = "Waves on a chain".into();
-        scene.camera = Camera::Plane { centre: [0.5 * length, 0.0], extent: [1.08 * length, 1.08 * HEIGHT * length] };
-        scene.colouring = Colouring::Species(vec![]);
-        let displacements = self.chain.displacements();
         let largest = match self.subject {
             Subject::Shaken { omega, gamma } => {
                 let parts = theory::response(omega, gamma, self.material.omega_0(), design.count());
@@ -288,18 +284,10 @@ impl Simulation for Braked {
         };
         let scale = REACH * length / largest;
         let radius = (0.48 * design.spacing).min(0.009 * length);
-        let mut points: Vec<[f64; 3]> = displacements.iter().enumerate().map(|(n, u)| [design.place(n), scale * u, 0.0]).collect();
-        scene.bodies.extend(points.iter().enumerate().map(|(n, &position)| Body {
-            position,
-            velocity: [0.0, self.chain.velocity(n), 0.0],
-            time: scene.time,
-            radius,
-            shade: 0.0,
-        }));
+        beads::string(scene, &self.chain, |u| scale * u, |_| radius, |_| 0.0);
         let half = 0.5 * HEIGHT * length;
         let post = |x: f64, width: f32, colour: Colour| Line { from: [x, -half, 0.0], to: [x, half, 0.0], width, colour };
-        for (x, u) in self.chain.anchors() {
-            points.push([x, scale * u, 0.0]);
+        for (x, _) in self.chain.anchors() {
             let shaken = x == 0.0 && matches!(self.subject, Subject::Shaken { .. });
             scene.lines.push(if shaken { post(x, 1.5, Colour::Accent(1)) } else { post(x, 4.0, Colour::Wall) });
         }
@@ -309,9 +297,6 @@ impl Simulation for Braked {
             scene.bodies[last].radius = 1.4 * radius;
             scene.lines.push(post(design.place(last), 4.0, Colour::Accent(1)));
         }
-        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        let spring = |pair: &[[f64; 3]]| Line { from: pair[0], to: pair[1], width: 1.2, colour: Colour::Faint };
-        scene.lines.extend(points.windows(2).map(spring));
         let told = match self.subject {
             Subject::End { impedance } => {
                 let left = self.chain.energy().total() / self.samples[0].1;

@@ -9,17 +9,17 @@ mod toda;
 use corpuscle_checkpoint::{Resume, resume};
 use corpuscle_core::{Axis, Boundary, Engine, Failure, Invalid, Particles, Vector};
 use corpuscle_observe::{Chart, Check, Schedule};
-use corpuscle_scene::{Body, Camera, Colour, Colouring, Label, Line, Region, Scene};
+use corpuscle_scene::{Body, Colour, Label, Line, Region, Scene};
 use corpuscle_time::{Bonds, Force, Integrator, Pin, Spring, Springs, TimeDriven, Toda};
 
+use super::beads::{self, HEIGHT};
 use crate::{Frame, Honesty, Settings, Simulation, Table, ensemble};
 use fput::Recurrence;
 use toda::Solitons;
 
 /// Samples in the whole run.
 const SAMPLES: usize = 1200;
-/// Height of the picture over the length of the chain, and largest displacement drawn.
-const HEIGHT: f64 = 0.52;
+/// The largest displacement drawn, over the length of the chain.
 const REACH: f64 = 0.16;
 
 /// A chain of masses along a line, its ends held.
@@ -213,11 +213,7 @@ impl Simulation for Nonlinear {
     }
 
     fn draw(&self, scene: &mut Scene) {
-        scene.clear();
-        let length = self.length();
-        scene.time = self.rows[0].engine.time();
-        scene.camera = Camera::Plane { centre: [0.5 * length, 0.0], extent: [1.08 * length, 1.08 * HEIGHT * length] };
-        scene.colouring = Colouring::Species(vec![]);
+        beads::stage(scene, self.length(), self.rows[0].engine.time());
         match &self.purpose {
             Purpose::Recurrence(part) => self.draw_recurrence(part, scene),
             Purpose::Solitons(part) => self.draw_solitons(part, scene),

@@ -1,25 +1,21 @@
 //! The wave experiment's picture: the chain with its springs, ends and density step, displacements drawn larger than they
 //! are, and d'Alembert's string behind it.
 
-use corpuscle_scene::{Body, Camera, Colour, Colouring, Label, Line, Region, Scene};
+use corpuscle_scene::{Body, Colour, Label, Line, Region, Scene};
 
+use super::beads::{self, HEIGHT};
 use super::chain::{End, Ends, Polarisation};
 use super::{Start, Wave, theory};
 
-/// Height of the picture over the length of the chain.
-const HEIGHT: f64 = 0.52;
 /// Largest displacement drawn, over the length.
 const REACH: f64 = 0.19;
 
 impl Wave {
     pub(super) fn picture(&self, scene: &mut Scene) {
-        scene.clear();
         let design = self.chain.design();
         let length = design.length();
-        scene.time = self.chain.time();
+        beads::stage(scene, length, self.chain.time());
         scene.title = "Waves on a chain".into();
-        scene.camera = Camera::Plane { centre: [0.5 * length, 0.0], extent: [1.08 * length, 1.08 * HEIGHT * length] };
-        scene.colouring = Colouring::Species(vec![]); // the labels below name the halves: no legend takes room from the chain
         let half = 0.5 * HEIGHT * length;
         if self.ratio != 1.0 {
             let colour = Colour::Tint(1);
@@ -104,8 +100,7 @@ impl Wave {
 
     /// Displacements drawn across, about the height `middle`.
     fn string(&self, scene: &mut Scene, middle: f64, scale: f64, half: f64) {
-        let design = self.chain.design();
-        let (count, length) = (design.count(), design.length());
+        let length = self.chain.design().length();
         let height = |u: f64| middle + scale * u;
         if let Some(wave) = &self.dalembert {
             const PARTS: i32 = 400;
@@ -116,24 +111,7 @@ impl Wave {
             let line = |part: i32| Line { from: point(part), to: point(part + 1), width: 1.0, colour: Colour::Accent(5) };
             scene.lines.extend((0..PARTS).map(line));
         }
-        let mut points: Vec<[f64; 3]> = (0..count).map(|n| [design.place(n), height(self.chain.displacement(n)), 0.0]).collect();
-        scene.bodies.extend(points.iter().enumerate().map(|(n, &position)| Body {
-            position,
-            velocity: [0.0, self.chain.velocity(n), 0.0],
-            time: self.chain.time(),
-            radius: self.radius(n),
-            shade: self.species(n),
-        }));
-        for (x, u) in self.chain.anchors() {
-            points.push([x, height(u), 0.0]);
-        }
-        if design.ends == Ends::Ring {
-            let seam = 0.5 * (points[0][1] + points[count - 1][1]);
-            points.extend([[0.0, seam, 0.0], [length, seam, 0.0]]);
-        }
-        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        let spring = |pair: &[[f64; 3]]| Line { from: pair[0], to: pair[1], width: 1.2, colour: Colour::Faint };
-        scene.lines.extend(points.windows(2).map(spring));
+        beads::string(scene, &self.chain, height, |n| self.radius(n), |n| self.species(n));
         self.ends(scene, middle, half);
     }
 
