@@ -21,7 +21,7 @@ use corpuscle_scene::{Colour, Colouring, Scene, TrailPoint};
 
 use crate::replicas::{Replicas, energy_check, honesty};
 use crate::tally::Tally;
-use crate::{Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, peek};
+use crate::{Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, Situation, drawing, ensemble, peek};
 use table::{Layout, Table, Twins};
 
 /// The registry's entry.
@@ -36,12 +36,18 @@ pub(crate) static EXPERIMENT: Experiment = Experiment {
     start,
 };
 
+const LAYOUTS: &[Situation] = &[
+    Situation::new("random", &[]),
+    Situation::new("square", &[&["scatterers"]]),
+    Situation::new("triangular", &[&["scatterers"]]),
+];
+
 static PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "layout",
         unit: "",
         help: "Where the scatterers stand: anywhere (the Lorentz gas), on a square lattice (Sinai), on a triangular one.",
-        kind: Kind::Choice { default: "random", options: &["random", "square", "triangular"] },
+        kind: Kind::Situation { default: "random", options: LAYOUTS },
     },
     Parameter {
         name: "coverage",

@@ -19,7 +19,7 @@ use corpuscle_observe::theory;
 
 use crate::gas;
 use crate::study::Vessel;
-use crate::{Experiment, Kind, Parameter, Settings, Simulation};
+use crate::{Experiment, Kind, Parameter, Settings, Simulation, Situation};
 use opening::Entropy;
 use room::Process;
 
@@ -35,16 +35,23 @@ pub(crate) static EXPERIMENT: Experiment = Experiment {
     start,
 };
 
+const PROCESSES: &[Situation] = &[
+    Situation::new("expansion", &[]),
+    Situation::new("mixing", &[]),
+    Situation::new("effusion", &[]),
+    Situation::new("echo", &[]),
+    Situation::new("recurrence", &[]),
+    Situation::new("relaxation", &[]),
+    Situation::new("demon", &[]),
+];
+
 static PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "process",
         unit: "",
         help: "What happens: free expansion or mixing (both are measured, one is shown), effusion through a hole, Loschmidt's echo, \
                recurrence of few particles, relaxation of speeds (Boltzmann's H), Maxwell's demon.",
-        kind: Kind::Choice {
-            default: "expansion",
-            options: &["expansion", "mixing", "effusion", "echo", "recurrence", "relaxation", "demon"],
-        },
+        kind: Kind::Situation { default: "expansion", options: PROCESSES },
     },
     gas::DIMENSION,
     Parameter {

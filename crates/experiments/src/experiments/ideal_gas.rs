@@ -19,9 +19,19 @@ mod warm_walls;
 use corpuscle_core::{Axis, Invalid};
 
 use crate::simulation::Simulation;
-use crate::{Experiment, Kind, Parameter, Settings, gas};
+use crate::{Experiment, Kind, Parameter, Settings, Situation, gas};
 use laws::Laboratory;
 use system::State;
+
+const PROCESSES: &[Situation] = &[
+    Situation::new("laws", &[]),
+    Situation::new("isotherms", &[]),
+    Situation::new("isobars", &[]),
+    Situation::new("adiabat", &[]),
+    Situation::new("piston", &[]),
+    Situation::new("warm-walls", &[]),
+    Situation::new("mixture", &[]),
+];
 
 /// The experiment.
 pub(crate) static EXPERIMENT: Experiment = Experiment {
@@ -38,10 +48,7 @@ pub(crate) static EXPERIMENT: Experiment = Experiment {
             help: "What is done: the sweeps of the laws, temperatures or volumes held up to dense fluids (isotherms), pressure held by \
                    a loaded piston (isobars), a slow and a fast compression (adiabat), a piston under a constant force, walls with a \
                    temperature, a mixture of two gases.",
-            kind: Kind::Choice {
-                default: "laws",
-                options: &["laws", "isotherms", "isobars", "adiabat", "piston", "warm-walls", "mixture"],
-            },
+            kind: Kind::Situation { default: "laws", options: PROCESSES },
         },
         gas::DIMENSION,
         Parameter {

@@ -103,19 +103,12 @@ struct Wave {
 }
 
 fn start(settings: &Settings) -> Result<Box<dyn Simulation>, Invalid> {
-    let mut settings = settings.clone();
-    let name = settings.word("preset").to_owned();
-    for (key, text) in parameters::preset(&name) {
-        if !settings.is_given(key) {
-            settings.set_text(key, text)?;
-        }
-    }
-    Ok(match name.as_str() {
-        "fermi-pasta" | "solitons" => Box::new(Nonlinear::new(&settings)?),
-        "dispersion" => Box::new(Spectra::new(&settings)?),
-        "matched-end" | "damped-mode" | "resonance" => Box::new(Braked::new(&settings)?),
-        "two-sources" | "double-slit" | "single-slit" | "doppler" => Box::new(Membrane::new(&settings)?),
-        _ => Box::new(Wave::new(&settings)?),
+    Ok(match settings.word("preset") {
+        "fermi-pasta" | "solitons" => Box::new(Nonlinear::new(settings)?),
+        "dispersion" => Box::new(Spectra::new(settings)?),
+        "matched-end" | "damped-mode" | "resonance" => Box::new(Braked::new(settings)?),
+        "two-sources" | "double-slit" | "single-slit" | "doppler" => Box::new(Membrane::new(settings)?),
+        _ => Box::new(Wave::new(settings)?),
     })
 }
 
@@ -132,7 +125,10 @@ impl Wave {
         let start = match settings.word("start") {
             "pulse" => Start::Pulse { width: settings.real("pulse_width") * spacing },
             "mode" => Start::Mode(settings.whole("mode")),
-            _ => Start::Drive { angular_frequency: TAU * settings.real("drive_frequency") },
+            _ if settings.real("drive_frequency") > 0.0 => {
+                Start::Drive { angular_frequency: TAU * settings.real("drive_frequency") }
+            }
+            _ => return Err(settings.invalid("drive_frequency", "a number above 0: this chain has no mode to shake in")),
         };
         let signal = match start {
             Start::Drive { angular_frequency } => {

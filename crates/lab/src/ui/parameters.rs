@@ -186,7 +186,9 @@ fn range(model: &Model, parameter: &Parameter) -> String {
     match parameter.kind {
         Kind::Real { least, most, .. } => language.fill(Text::Range, &[&significant(least, 4), &significant(most, 4)]),
         Kind::Whole { least, most, .. } => language.fill(Text::Range, &[&least.to_string(), &most.to_string()]),
-        Kind::Choice { options, .. } => options.iter().map(|word| language.choice(word)).collect::<Vec<_>>().join(" · "),
+        Kind::Choice { .. } | Kind::Situation { .. } => {
+            parameter.words().iter().map(|word| language.choice(word)).collect::<Vec<_>>().join(" · ")
+        }
         Kind::Flag { .. } => String::new(),
         Kind::List { least, most, longest, .. } => {
             language.fill(Text::ListRange, &[&longest.to_string(), &significant(least, 4), &significant(most, 4)])
@@ -226,12 +228,12 @@ fn field(ui: &mut Ui, model: &mut Model, parameter: &Parameter, value: &Value, l
             let response = ui.add(field).labelled_by(label).on_hover_text(help);
             settled(model, &response, parameter, changed as f64, changed != n).map(|n| Value::Whole(n as u64))
         }
-        (Kind::Choice { options, .. }, Value::Word(word)) => {
+        (Kind::Choice { .. } | Kind::Situation { .. }, Value::Word(word)) => {
             let mut changed = word.clone();
             let combo = ComboBox::from_id_salt(parameter.name).width(118.0).selected_text(language.choice(word));
             let response = combo.show_ui(ui, |ui| {
-                for option in options {
-                    ui.selectable_value(&mut changed, (*option).to_owned(), language.choice(option));
+                for option in parameter.words() {
+                    ui.selectable_value(&mut changed, option.to_owned(), language.choice(option));
                 }
             });
             response.response.labelled_by(label).on_hover_text(help);

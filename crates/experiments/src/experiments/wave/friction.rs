@@ -103,7 +103,7 @@ impl Braked {
         let modes = Modes::of(&design(fixed, vec![], dt));
         let omega_of = |j: usize| modes.map_or(f64::NAN, |modes| dispersion(omega_0, modes.phase(j)));
         let mode = settings.whole("mode");
-        if mode > count {
+        if mode > count && settings.idle_under("mode").is_none() {
             return Err(settings.invalid("mode", format!("a whole number from 1 to {count}")));
         }
         let (subject, chain, trials, end) = match settings.word("preset") {
@@ -138,8 +138,8 @@ impl Braked {
                     let most = 1.6 * omega_of(1) / omega_0;
                     return Err(settings.invalid("damping", format!("less than {most:.4}: more of it leaves no resonance")));
                 }
-                let omega =
-                    if settings.is_given("drive_frequency") { TAU * settings.real("drive_frequency") } else { omega_of(mode) };
+                let frequency = settings.real("drive_frequency");
+                let omega = if frequency > 0.0 { TAU * frequency } else { omega_of(mode) };
                 // Each period has whole steps.
                 let steps = (TAU / (omega * dt)).ceil().max(8.0);
                 let signal = Signal::Sine { amplitude, angular_frequency: omega, phase: 0.0, ramp: 2.0 * TAU / omega };

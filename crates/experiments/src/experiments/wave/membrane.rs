@@ -89,7 +89,13 @@ impl Membrane {
             _ => Subject::Moving(settings.real("source_speed")),
         };
         let free = ROWS - 2 * SPONGE;
-        if separation > free || width > free || (matches!(subject, Subject::DoubleSlit(..)) && width >= separation) {
+        let fits = match subject {
+            Subject::TwoSources(separation) => separation <= free,
+            Subject::DoubleSlit(separation, width) => width < separation && separation <= free,
+            Subject::SingleSlit(width) => width <= free,
+            Subject::Moving(_) => true,
+        };
+        if !fits {
             return Err(
                 settings.invalid("slit_width", format!("slits that fit between the sponges, {free} masses, and do not meet"))
             );
