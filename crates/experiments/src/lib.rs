@@ -14,6 +14,7 @@ mod hand;
 mod horizon;
 pub mod parameter;
 mod peek;
+pub mod probe;
 mod replicas;
 pub mod settings;
 pub mod simulation;
@@ -23,6 +24,7 @@ mod tally;
 pub use deeds::{Deed, with_deeds};
 pub use frame::Frame;
 pub use parameter::{Kind, Parameter, Situation, Value};
+pub use probe::Probed;
 pub use settings::Settings;
 pub use simulation::{Action, Honesty, Simulation, Table};
 

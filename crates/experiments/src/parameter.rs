@@ -207,7 +207,7 @@ impl Parameter {
     }
 }
 
-/// The table of these parameters in Markdown: key, what it means, default, what is accepted.
+/// The table of these parameters in Markdown: key, what it means, default, what is accepted; and what situations set.
 pub fn table(parameters: &[Parameter]) -> String {
     let mut out = String::from("| key | meaning | default | accepted |\n|---|---|---|---|\n");
     for parameter in parameters {
@@ -220,6 +220,23 @@ pub fn table(parameters: &[Parameter]) -> String {
         };
         let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
         let _ = writeln!(out, "| `{name}` | {help} | {default}{unit} | {} |", parameter.expected());
+    }
+    out + &situations(parameters)
+}
+
+/// The table of what situations set; nothing where they set nothing.
+fn situations(parameters: &[Parameter]) -> String {
+    let mut out = String::new();
+    for parameter in parameters {
+        let Kind::Situation { options, .. } = parameter.kind else { continue };
+        let mut setting = options.iter().filter(|situation| !situation.sets.is_empty()).peekable();
+        if setting.peek().is_some() {
+            let _ = writeln!(out, "\n| `{}` | sets, unless given |\n|---|---|", parameter.name);
+        }
+        for situation in setting {
+            let sets: Vec<String> = situation.sets.iter().map(|(key, text)| format!("`{key}` = {text}")).collect();
+            let _ = writeln!(out, "| {} | {} |", situation.name, sets.join(", "));
+        }
     }
     out
 }

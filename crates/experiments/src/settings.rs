@@ -183,10 +183,8 @@ mod tests {
     use super::*;
     use crate::Situation;
 
-    static SITUATIONS: &[Situation] = &[
-        Situation::new("plain", &[&["masses"]]),
-        Situation::new("heavy", &[]).with(&[("masses", "7, 8"), ("temperature", "3")]),
-    ];
+    static SITUATIONS: &[Situation] =
+        &[Situation::new("plain", &[&["masses"]]), Situation::new("heavy", &[]).with(&[("masses", "7, 8"), ("temperature", "3")])];
 
     static PARAMETERS: &[Parameter] = &[
         Parameter { name: "preset", unit: "", help: "", kind: Kind::Situation { default: "plain", options: SITUATIONS } },

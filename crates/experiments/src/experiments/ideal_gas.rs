@@ -24,13 +24,13 @@ use laws::Laboratory;
 use system::State;
 
 const PROCESSES: &[Situation] = &[
-    Situation::new("laws", &[]),
-    Situation::new("isotherms", &[]),
-    Situation::new("isobars", &[]),
-    Situation::new("adiabat", &[]),
-    Situation::new("piston", &[]),
-    Situation::new("warm-walls", &[]),
-    Situation::new("mixture", &[]),
+    Situation::new("laws", &[&["temperatures", "speeds", "piston_mass", "heavy_mass"]]),
+    Situation::new("isotherms", &[&["span", "points", "speeds", "piston_mass", "heavy_mass"]]),
+    Situation::new("isobars", &[&["dense_packings", "temperatures", "speeds", "heavy_mass"]]),
+    Situation::new("adiabat", &[&["span", "points", "dense_packings", "temperatures", "piston_mass", "heavy_mass", "duration"]]),
+    Situation::new("piston", &[&["span", "points", "dense_packings", "temperatures", "speeds", "heavy_mass", "duration"]]),
+    Situation::new("warm-walls", &[&["span", "points", "dense_packings", "temperatures", "speeds", "piston_mass", "heavy_mass"]]),
+    Situation::new("mixture", &[&["span", "points", "dense_packings", "temperatures", "speeds", "piston_mass"]]),
 ];
 
 /// The experiment.

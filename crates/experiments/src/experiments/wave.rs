@@ -8,6 +8,7 @@
 mod chain;
 mod charts;
 mod friction;
+mod held;
 mod initial;
 mod membrane;
 mod nonlinear;
@@ -31,6 +32,7 @@ use corpuscle_time::{Integrator, Signal};
 use crate::{Action, Experiment, Frame, Honesty, Settings, Simulation, Table, ensemble};
 use chain::{Chain, Design, End, Ends, Polarisation};
 use friction::Braked;
+use held::Held;
 use membrane::Membrane;
 use nonlinear::Nonlinear;
 use spectra::Spectra;
@@ -100,6 +102,8 @@ struct Wave {
     /// Largest deviation from the superposition of normal modes, where that is known.
     deviation: Option<f64>,
     reversed: bool,
+    /// A copy that a hand plays with, while the measured chain goes on.
+    in_hand: Option<Held>,
 }
 
 fn start(settings: &Settings) -> Result<Box<dyn Simulation>, Invalid> {
@@ -190,6 +194,7 @@ impl Wave {
             largest: 0.0,
             deviation: None,
             reversed: false,
+            in_hand: None,
         };
         wave.sample_until(0.0)?;
         Ok(wave)
@@ -286,7 +291,7 @@ impl Wave {
 resume!(Wave {
     values: [schedule, time, samples, kept, largest, deviation, reversed],
     parts: [chain, trials],
-    set_up: [material, ratio, start, amplitude, step, dalembert, initial, end],
+    set_up: [material, ratio, start, amplitude, step, dalembert, initial, end, in_hand],
     then: forget_when_reversed,
 });
 
@@ -312,6 +317,7 @@ impl Simulation for Wave {
         ensemble::for_each(&mut self.trials, |trial| trial.advance(share))?;
         self.record_until(to)?;
         self.chain.advance(to)?;
+        self.in_hand.as_mut().map_or(Ok(()), |held| held.advance(to))?;
         self.time = self.time.max(to);
         Ok(())
     }
@@ -355,15 +361,23 @@ impl Simulation for Wave {
         (0..5).map(|k| 0.2 * f64::from(k) * self.end).collect()
     }
 
-    fn act(&mut self, action: Action) -> Result<(), Invalid> {
-        if action != Action::Reverse {
-            return action.refused("free particles: the masses of this chain are held by their springs");
+    fn refusal(&self, action: Action) -> Option<&'static str> {
+        match action {
+            Action::Reverse | Action::Place { .. } | Action::Throw { .. } if !matches!(self.start, Start::Drive { .. }) => None,
+            Action::Reverse | Action::Place { .. } | Action::Throw { .. } => Some("a chain without a shaker, which would go on"),
+            _ => Some("free particles: the masses of this chain are held by their springs"),
         }
-        if matches!(self.start, Start::Drive { .. }) {
-            return action.refused("a chain without a shaker, which would go on forwards");
+    }
+
+    /// The reversal is of the measured chain, as long as no hand has touched it otherwise.
+    fn act(&mut self, action: Action) -> Result<(), Invalid> {
+        action.allowed(self)?;
+        if action != Action::Reverse {
+            return self.touch(action);
         }
         self.reversed = true;
         self.dalembert = None;
-        self.chain.reverse()
+        self.chain.reverse()?;
+        self.in_hand.as_mut().map_or(Ok(()), |held| held.chain.reverse())
     }
 }

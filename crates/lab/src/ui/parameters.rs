@@ -6,7 +6,7 @@ use egui::{Align, ComboBox, DragValue, Layout, RichText, ScrollArea, Slider, Sli
 
 use super::icons::Icon;
 use super::widgets::{quiet, section, sized_icon_button};
-use crate::language::Text;
+use crate::language::{Language, Text};
 use crate::model::Model;
 use crate::number::significant;
 use crate::presets;
@@ -144,10 +144,16 @@ fn one(ui: &mut Ui, model: &mut Model, seen: &Snapshot, parameter: &'static Para
         _ => None,
     };
     let help = format!("{}\n{}", language.phrase(parameter.help), range(model, parameter));
+    let idle = model.scenario.settings.idle_under(parameter.name).map(|by| idle(model, by));
     let mut chosen = None;
+    let top = ui.cursor().min;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        let ink = if refused.is_some() { colours.bad } else { colours.ink };
+        let ink = match (&refused, &idle) {
+            (Some(_), _) => colours.bad,
+            (None, Some(_)) => colours.quiet,
+            (None, None) => colours.ink,
+        };
         let label = ui.label(RichText::new(&name).color(ink)).on_hover_text(&help);
         if !parameter.unit.is_empty() {
             ui.label(RichText::new(language.phrase(parameter.unit)).color(colours.quiet).small());
@@ -158,18 +164,35 @@ fn one(ui: &mut Ui, model: &mut Model, seen: &Snapshot, parameter: &'static Para
                 if !given {
                     ui.set_invisible();
                 }
-                let tip = language.fill(Text::ResetTo, &[&shown(&parameter.default())]);
+                let fallback = model.scenario.settings.fallback(parameter.name).unwrap_or_else(|_| parameter.default());
+                let tip = language.fill(Text::ResetTo, &[&shown(language, &fallback)]);
                 if sized_icon_button(ui, Icon::Undo, &tip, "", false, vec2(20.0, 20.0)).clicked() {
                     chosen = Some(None);
                 }
             });
-            if let Some(value) = field(ui, model, parameter, &value, label.id, &help) {
-                chosen = Some(Some(value));
-            }
+            ui.scope(|ui| {
+                if idle.is_some() {
+                    ui.disable();
+                }
+                if let Some(value) = field(ui, model, parameter, &value, label.id, &help) {
+                    chosen = Some(Some(value));
+                }
+            });
         });
     });
-    if let Some(value) = slider(ui, model, parameter, &value, &name) {
-        chosen = Some(Some(value));
+    ui.scope(|ui| {
+        if idle.is_some() {
+            ui.disable();
+        }
+        if let Some(value) = slider(ui, model, parameter, &value, &name) {
+            chosen = Some(Some(value));
+        }
+    });
+    if let Some(words) = idle {
+        let rect = egui::Rect::from_min_max(top, egui::pos2(ui.max_rect().right(), ui.cursor().top()));
+        let whole = ui.interact(rect, ui.scope_id().with(("idle", parameter.name)), egui::Sense::hover());
+        whole.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, false, format!("{name}: {words}")));
+        whole.on_hover_text(format!("{words}\n{help}"));
     }
     if let Some(expected) = refused {
         ui.add(egui::Label::new(RichText::new(language.fill(Text::Expected, &[&expected])).color(colours.bad).small()).wrap());
@@ -178,6 +201,13 @@ fn one(ui: &mut Ui, model: &mut Model, seen: &Snapshot, parameter: &'static Para
     if let Some(value) = chosen {
         model.set_parameter(parameter, value);
     }
+}
+
+/// Why a parameter is not used, in words.
+fn idle(model: &Model, by: &Parameter) -> String {
+    let language = model.language();
+    let name = language.parameter(model.scenario.name(), by.name);
+    language.fill(Text::NotUsed, &[&name, &language.choice(model.scenario.settings.word(by.name))])
 }
 
 /// What is accepted, in words.
@@ -196,8 +226,9 @@ fn range(model: &Model, parameter: &Parameter) -> String {
     }
 }
 
-fn shown(value: &Value) -> String {
+fn shown(language: Language, value: &Value) -> String {
     match value {
+        Value::Word(word) => language.choice(word),
         Value::Real(x) => significant(*x, 6),
         Value::List(list) if list.is_empty() => "[ ]".into(),
         value => value.to_string(),

@@ -14,7 +14,7 @@ use corpuscle_observe::{Chart, Check, Estimate, Series, Style};
 use corpuscle_scene::{Body, Camera, Colour, Colouring, Label, Scene, TrailPoint};
 
 use super::failure;
-use crate::{Frame, Honesty, Settings, Simulation, Table, ensemble};
+use crate::{Action, Frame, Honesty, Settings, Simulation, Table, ensemble};
 use frame::Turning;
 use orbit::Orbit;
 
@@ -222,6 +222,10 @@ impl Simulation for Restricted {
 
     fn moments(&self) -> Vec<f64> {
         vec![0.02 * self.end, 0.2 * self.end]
+    }
+
+    fn refusal(&self, _: Action) -> Option<&'static str> {
+        Some("three stars that move: these grains are followed with all their neighbours from their start")
     }
 }
 

@@ -19,7 +19,7 @@ use corpuscle_time::Signal;
 
 use super::chain::{Chain, End, Ends};
 use super::theory::{Modes, dispersion, project};
-use crate::{Frame, Honesty, Settings, Simulation, ensemble};
+use crate::{Action, Frame, Honesty, Settings, Simulation, ensemble};
 use trial::{PERIODS, Trial};
 
 /// Samples in the whole run.
@@ -387,6 +387,10 @@ impl Simulation for Braked {
             Subject::End { .. } => [0.0, 0.3, 0.47, 0.6].map(|share| share * self.end).to_vec(),
             _ => [0.0, 0.03, 0.1, 0.5].map(|share| share * self.end).to_vec(),
         }
+    }
+
+    fn refusal(&self, _: Action) -> Option<&'static str> {
+        Some("a chain without friction, whose way back is as its way forth")
     }
 }
 

@@ -16,7 +16,7 @@ use corpuscle_scene::{Camera, Cell, Colour, Colouring, Line, Map, Scene};
 use corpuscle_time::{Force, Integrator, Pin, Spring, Springs, TimeDriven};
 
 use super::sponge::Sponge;
-use crate::{Frame, Honesty, Settings, Simulation};
+use crate::{Action, Frame, Honesty, Settings, Simulation};
 use parts::Sources;
 
 /// Masses along and across.
@@ -357,6 +357,10 @@ impl Simulation for Membrane {
 
     fn moments(&self) -> Vec<f64> {
         [0.25, 0.6].map(|share| share * self.end()).to_vec()
+    }
+
+    fn refusal(&self, _: Action) -> Option<&'static str> {
+        Some("a chain: the sources of this membrane go on by themselves")
     }
 }
 

@@ -26,9 +26,12 @@ const PRESETS: &[Situation] = &[
     Situation::new("matched-end", &[CHAIN, NONLINEAR, MEMBRANE, &["mode", "drive_frequency", "time_step", "damping"]]),
     Situation::new("damped-mode", &[CHAIN, NONLINEAR, MEMBRANE, &["pulse_width", "drive_frequency", "time_step", "end_impedance"]])
         .with(&[("masses", "60")]),
-    Situation::new("resonance", &[CHAIN, NONLINEAR, MEMBRANE, &["pulse_width", "time_step", "end_impedance"]])
-        .with(&[("masses", "30"), ("mode", "2"), ("drive_frequency", "0")]),
-    Situation::new("dispersion", &[CHAIN, START, FRICTION, NONLINEAR, MEMBRANE]).with(&[("masses", "96")]),
+    Situation::new("resonance", &[CHAIN, NONLINEAR, MEMBRANE, &["pulse_width", "time_step", "end_impedance"]]).with(&[
+        ("masses", "30"),
+        ("mode", "2"),
+        ("drive_frequency", "0"),
+    ]),
+    Situation::new("dispersion", &[CHAIN, START, FRICTION, NONLINEAR, MEMBRANE, &["duration"]]).with(&[("masses", "96")]),
     Situation::new("fermi-pasta", &[CHAIN, &["pulse_width", "drive_frequency", "solitons"], FRICTION, MEMBRANE])
         .with(&[("masses", "31"), ("mode", "1")]),
     Situation::new("solitons", &[CHAIN, START, FRICTION, MEMBRANE, &["nonlinearity", "amplitude"]]).with(&[("masses", "300")]),
