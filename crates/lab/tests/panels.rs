@@ -14,7 +14,7 @@ use corpuscle_scene::Scene;
 use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 
 /// A window on an experiment, with its simulation's thread.
 struct Window {
