@@ -7,7 +7,7 @@ use corpuscle_scene::Scene;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::{Action, Frame, Honesty, Simulation, Table};
+use crate::{Action, Frame, Honesty, Probed, Simulation, Table};
 
 /// An action at a physical time.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
@@ -168,6 +168,18 @@ impl Simulation for Touched {
         let deed = self.deeds.get(self.done).map(|deed| deed.at);
         // A deed changes what collides next.
         deed.filter(|&at| collision.is_none_or(|time| at <= time)).or(collision)
+    }
+
+    fn probe(&mut self, corners: Option<[[f64; 2]; 2]>) {
+        self.simulation.probe(corners);
+    }
+
+    fn probed(&self) -> Option<Probed> {
+        self.simulation.probed()
+    }
+
+    fn refusal(&self, action: Action) -> Option<&'static str> {
+        self.simulation.refusal(action)
     }
 
     fn act(&mut self, action: Action) -> Result<(), Invalid> {

@@ -5,7 +5,7 @@
 
 mod room;
 
-use corpuscle_core::{Boundary, Engine, Face, Failure, Invalid, Particles, Partition, Random, Vector};
+use corpuscle_core::{Axis, Boundary, Engine, Face, Failure, Invalid, Particles, Partition, Random, Vector};
 use corpuscle_event::EventDriven;
 use corpuscle_time::TimeDriven;
 
@@ -17,6 +17,13 @@ const DISTURBANCE: u64 = 0x6861_6e64;
 /// Largest disturbance: an eighth of a turn.
 const MOST_DISTURBED: f64 = 1.0;
 
+/// What hands cannot do where an experiment knows its particles by number.
+const EACH_IS_KNOWN: &str = "a system of a scenario file: this experiment knows each of its particles";
+/// What boundaries need.
+const NO_PISTON: &str = "a system with a piston";
+const NO_WALLS: &str = "a box with walls";
+const SOFT: &str = "hard particles: the walls of soft ones are no more than walls";
+
 /// A copy of a measured system: a hand plays with it while the measurement goes on undisturbed. It is no result: a run that is
 /// taken up again has none.
 #[derive(Clone, Debug)]
@@ -26,6 +33,19 @@ pub(crate) struct InHand<const D: usize> {
 }
 
 impl<const D: usize> InHand<D> {
+    /// What is on show: the copy, or what is measured while there is none.
+    pub(crate) fn on_show<'a>(held: Option<&'a Self>, engine: &'a EventDriven<D>) -> &'a EventDriven<D> {
+        held.map_or(engine, |copy| &copy.engine)
+    }
+
+    /// Advances the copy, if there is one, to a time on the engine's clock.
+    ///
+    /// # Errors
+    /// [`Failure`] of the engine.
+    pub(crate) fn advance_any(held: &mut Option<Self>, to: f64) -> Result<(), Failure> {
+        held.as_mut().map_or(Ok(()), |copy| copy.advance(to))
+    }
+
     /// Does something to the copy, which is made from `engine` and its tally when there is none yet. Bodies keep their number.
     ///
     /// # Errors
@@ -47,13 +67,44 @@ impl<const D: usize> InHand<D> {
     }
 }
 
+/// What an action on hard particles would need that is not there.
+pub(crate) fn wanting_of_hard<const D: usize>(engine: &EventDriven<D>, action: Action) -> Option<&'static str> {
+    match action {
+        Action::Push { .. } if engine.piston().is_none() => Some(NO_PISTON),
+        Action::Heat { .. } if !engine.boundary().axes.contains(&Axis::Walls) => Some(NO_WALLS),
+        _ => None,
+    }
+}
+
+/// The same where an experiment knows each particle by its index.
+pub(crate) fn wanting_of_number<const D: usize>(engine: &EventDriven<D>, action: Action) -> Option<&'static str> {
+    match action {
+        Action::Add { .. } | Action::Remove { .. } => Some(EACH_IS_KNOWN),
+        _ => wanting_of_hard(engine, action),
+    }
+}
+
+/// What an action on soft particles would need.
+pub(crate) fn wanting_of_soft(action: Action) -> Option<&'static str> {
+    let on_walls = matches!(action, Action::Partition { .. } | Action::OpenPartitions | Action::Heat { .. } | Action::Push { .. });
+    on_walls.then_some(SOFT)
+}
+
+/// The same where each particle is known.
+pub(crate) fn wanting_of_soft_number(action: Action) -> Option<&'static str> {
+    match action {
+        Action::Add { .. } | Action::Remove { .. } => Some(EACH_IS_KNOWN),
+        _ => wanting_of_soft(action),
+    }
+}
+
 /// Does something to hard particles of which an experiment knows each by its index.
 ///
 /// # Errors
 /// As [`on_hard`]; also to add or to remove particles.
 pub(crate) fn on_number<const D: usize>(engine: &mut EventDriven<D>, action: Action) -> Result<(), Invalid> {
-    if matches!(action, Action::Add { .. } | Action::Remove { .. }) {
-        return action.refused("a system of a scenario file: this experiment knows each of its particles");
+    if let Some(expected) = wanting_of_number(engine, action) {
+        return action.refused(expected);
     }
     on_hard(engine, action)
 }
@@ -104,7 +155,7 @@ pub(crate) fn on_hard<const D: usize>(engine: &mut EventDriven<D>, action: Actio
         }
         Action::Push { velocity } => {
             let mut boundary = present(engine);
-            let Some(piston) = &mut boundary.piston else { return action.refused("a system with a piston") };
+            let Some(piston) = &mut boundary.piston else { return action.refused(NO_PISTON) };
             piston.velocity = vector::<D>(velocity)?[piston.axis];
             engine.set_boundary(boundary)?;
         }
@@ -150,9 +201,7 @@ pub(crate) fn on_soft<const D: usize>(engine: &mut TimeDriven<D>, action: Action
             let fewer = without(engine.snapshot(), body)?;
             engine.edit(|particles| *particles = fewer)
         }
-        Action::Partition { .. } | Action::OpenPartitions | Action::Heat { .. } | Action::Push { .. } => {
-            action.refused("hard particles: the walls of soft ones are no more than walls")
-        }
+        Action::Partition { .. } | Action::OpenPartitions | Action::Heat { .. } | Action::Push { .. } => action.refused(SOFT),
     }
 }
 

@@ -14,14 +14,18 @@ mod hand;
 mod horizon;
 pub mod parameter;
 mod peek;
+pub mod probe;
 mod replicas;
+pub mod settings;
 pub mod simulation;
 mod study;
 mod tally;
 
 pub use deeds::{Deed, with_deeds};
 pub use frame::Frame;
-pub use parameter::{Kind, Parameter, Settings, Value};
+pub use parameter::{Kind, Parameter, Situation, Value};
+pub use probe::Probed;
+pub use settings::Settings;
 pub use simulation::{Action, Honesty, Simulation, Table};
 
 use corpuscle_core::Invalid;

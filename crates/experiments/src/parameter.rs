@@ -1,6 +1,5 @@
 //! One declaration of a parameter serves the scenario file, the command line, the window's slider and the documentation.
 
-use std::collections::BTreeMap;
 use std::fmt::{self, Write};
 
 use corpuscle_core::Invalid;
@@ -46,6 +45,13 @@ pub enum Kind {
         /// The words accepted.
         options: &'static [&'static str],
     },
+    /// One of several words, each of which settles a whole situation.
+    Situation {
+        /// Value when not given.
+        default: &'static str,
+        /// The situations that can be chosen.
+        options: &'static [Situation],
+    },
     /// Yes or no.
     Flag {
         /// Value when not given.
@@ -62,6 +68,29 @@ pub enum Kind {
         /// Longest list accepted.
         longest: usize,
     },
+}
+
+/// What a word means for the other parameters. The run reads it and the window shows it: there is no second copy.
+#[derive(Clone, Copy, Debug)]
+pub struct Situation {
+    /// The word.
+    pub name: &'static str,
+    /// Values that hold in this situation where none are given, as one would write them on the command line.
+    pub sets: &'static [(&'static str, &'static str)],
+    /// Parameters that have no influence in it, in groups.
+    pub unused: &'static [&'static [&'static str]],
+}
+
+impl Situation {
+    /// A situation that leaves all other parameters as they are, but for those that have no influence in it.
+    pub(crate) const fn new(name: &'static str, unused: &'static [&'static [&'static str]]) -> Self {
+        Self { name, sets: &[], unused }
+    }
+
+    /// The same with values of its own.
+    pub(crate) const fn with(self, sets: &'static [(&'static str, &'static str)]) -> Self {
+        Self { sets, ..self }
+    }
 }
 
 /// The value of a parameter.
@@ -97,9 +126,18 @@ impl Parameter {
         match self.kind {
             Kind::Real { default, .. } => Value::Real(default),
             Kind::Whole { default, .. } => Value::Whole(default),
-            Kind::Choice { default, .. } => Value::Word(default.into()),
+            Kind::Choice { default, .. } | Kind::Situation { default, .. } => Value::Word(default.into()),
             Kind::Flag { default } => Value::Flag(default),
             Kind::List { default, .. } => Value::List(default.into()),
+        }
+    }
+
+    /// The words to choose from; none of a parameter that is no choice.
+    pub fn words(&self) -> Vec<&'static str> {
+        match self.kind {
+            Kind::Choice { options, .. } => options.to_vec(),
+            Kind::Situation { options, .. } => options.iter().map(|situation| situation.name).collect(),
+            _ => vec![],
         }
     }
 
@@ -108,7 +146,7 @@ impl Parameter {
         match self.kind {
             Kind::Real { least, most, .. } => format!("a number from {least} to {most}"),
             Kind::Whole { least, most, .. } => format!("a whole number from {least} to {most}"),
-            Kind::Choice { options, .. } => format!("one of {}", options.join(", ")),
+            Kind::Choice { .. } | Kind::Situation { .. } => format!("one of {}", self.words().join(", ")),
             Kind::Flag { .. } => "true or false".into(),
             Kind::List { least, most, longest, .. } => format!("a list of at most {longest} numbers from {least} to {most}"),
         }
@@ -128,7 +166,9 @@ impl Parameter {
             (Kind::Whole { least, most, .. }, Value::Real(x)) if x.fract() == 0.0 && within(x, least as f64, most as f64) => {
                 Ok(Value::Whole(x as u64))
             }
-            (Kind::Choice { options, .. }, Value::Word(word)) if options.contains(&word.as_str()) => Ok(Value::Word(word)),
+            (Kind::Choice { .. } | Kind::Situation { .. }, Value::Word(word)) if self.words().contains(&word.as_str()) => {
+                Ok(Value::Word(word))
+            }
             (Kind::Choice { options, .. }, Value::Whole(n)) if options.contains(&n.to_string().as_str()) => {
                 Ok(Value::Word(n.to_string()))
             }
@@ -155,7 +195,7 @@ impl Parameter {
                 Ok(n) => Value::Whole(n),
                 Err(_) => Value::Real(text.parse().map_err(|_| refused())?),
             },
-            Kind::Choice { .. } => Value::Word(text.into()),
+            Kind::Choice { .. } | Kind::Situation { .. } => Value::Word(text.into()),
             Kind::Flag { .. } => Value::Flag(text.parse().map_err(|_| refused())?),
             Kind::List { .. } => {
                 let items =
@@ -167,7 +207,7 @@ impl Parameter {
     }
 }
 
-/// The table of these parameters in Markdown: key, what it means, default, what is accepted.
+/// The table of these parameters in Markdown: key, what it means, default, what is accepted; and what situations set.
 pub fn table(parameters: &[Parameter]) -> String {
     let mut out = String::from("| key | meaning | default | accepted |\n|---|---|---|---|\n");
     for parameter in parameters {
@@ -181,173 +221,22 @@ pub fn table(parameters: &[Parameter]) -> String {
         let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
         let _ = writeln!(out, "| `{name}` | {help} | {default}{unit} | {} |", parameter.expected());
     }
+    out + &situations(parameters)
+}
+
+/// The table of what situations set; nothing where they set nothing.
+fn situations(parameters: &[Parameter]) -> String {
+    let mut out = String::new();
+    for parameter in parameters {
+        let Kind::Situation { options, .. } = parameter.kind else { continue };
+        let mut setting = options.iter().filter(|situation| !situation.sets.is_empty()).peekable();
+        if setting.peek().is_some() {
+            let _ = writeln!(out, "\n| `{}` | sets, unless given |\n|---|---|", parameter.name);
+        }
+        for situation in setting {
+            let sets: Vec<String> = situation.sets.iter().map(|(key, text)| format!("`{key}` = {text}")).collect();
+            let _ = writeln!(out, "| {} | {} |", situation.name, sets.join(", "));
+        }
+    }
     out
-}
-
-/// A complete, checked set of parameters, with the seed.
-#[derive(Clone, Debug)]
-pub struct Settings {
-    parameters: &'static [Parameter],
-    values: BTreeMap<&'static str, Value>,
-    given: Vec<&'static str>,
-    /// Seed of all random numbers of the run.
-    pub seed: u64,
-}
-
-impl Settings {
-    /// The defaults of these parameters.
-    pub fn new(parameters: &'static [Parameter], seed: u64) -> Self {
-        let values = parameters.iter().map(|parameter| (parameter.name, parameter.default())).collect();
-        Self { parameters, values, given: vec![], seed }
-    }
-
-    /// The declaration of a parameter.
-    ///
-    /// # Errors
-    /// Names the nearest key, or all of them.
-    pub fn declaration(&self, key: &str) -> Result<&'static Parameter, Invalid> {
-        self.parameters.iter().find(|parameter| parameter.name == key).ok_or_else(|| {
-            let names: Vec<&str> = self.parameters.iter().map(|parameter| parameter.name).collect();
-            Invalid::new(key, "(an unknown key)", format!("one of {}", names.join(", ")))
-        })
-    }
-
-    /// Sets a value.
-    ///
-    /// # Errors
-    /// Names the key, the value and what was expected.
-    pub fn set(&mut self, key: &str, value: Value) -> Result<(), Invalid> {
-        let parameter = self.declaration(key)?;
-        self.values.insert(parameter.name, parameter.accept(value)?);
-        self.given.push(parameter.name);
-        Ok(())
-    }
-
-    /// Sets a value from the text of `--set key=value`.
-    ///
-    /// # Errors
-    /// Names the key, the text and what was expected.
-    pub fn set_text(&mut self, key: &str, text: &str) -> Result<(), Invalid> {
-        let value = self.declaration(key)?.parse(text)?;
-        self.set(key, value)
-    }
-
-    /// Whether the user gave this value (and so did not leave it to the default or a preset).
-    pub fn is_given(&self, key: &str) -> bool {
-        self.given.contains(&key)
-    }
-
-    /// All values in the order of their declaration.
-    pub fn iter(&self) -> impl Iterator<Item = (&'static Parameter, &Value)> {
-        self.parameters.iter().map(|parameter| (parameter, &self.values[parameter.name]))
-    }
-
-    /// Value of a real parameter.
-    ///
-    /// # Panics
-    /// When the experiment did not declare it as such: a mistake in the program, not in the input.
-    pub fn real(&self, key: &str) -> f64 {
-        match self.values.get(key) {
-            Some(&Value::Real(x)) => x,
-            other => undeclared(key, other),
-        }
-    }
-
-    /// Value of a whole-number parameter.
-    ///
-    /// # Panics
-    /// As [`real`](Settings::real).
-    pub fn whole(&self, key: &str) -> usize {
-        match self.values.get(key) {
-            Some(&Value::Whole(n)) => n as usize,
-            other => undeclared(key, other),
-        }
-    }
-
-    /// Value of a choice.
-    ///
-    /// # Panics
-    /// As [`real`](Settings::real).
-    pub fn word(&self, key: &str) -> &str {
-        match self.values.get(key) {
-            Some(Value::Word(word)) => word,
-            other => undeclared(key, other),
-        }
-    }
-
-    /// Value of a flag.
-    ///
-    /// # Panics
-    /// As [`real`](Settings::real).
-    pub fn flag(&self, key: &str) -> bool {
-        match self.values.get(key) {
-            Some(&Value::Flag(flag)) => flag,
-            other => undeclared(key, other),
-        }
-    }
-
-    /// Value of a list.
-    ///
-    /// # Panics
-    /// As [`real`](Settings::real).
-    pub fn list(&self, key: &str) -> &[f64] {
-        match self.values.get(key) {
-            Some(Value::List(list)) => list,
-            other => undeclared(key, other),
-        }
-    }
-
-    /// An error about one of these values, for relations between several that no single range can express.
-    pub fn invalid(&self, key: &str, expected: impl Into<String>) -> Invalid {
-        Invalid::new(key, self.values.get(key).map(ToString::to_string).unwrap_or_default(), expected)
-    }
-}
-
-#[allow(clippy::panic)] // the program asks for what it did not declare: nothing a user can cause
-fn undeclared(key: &str, found: Option<&Value>) -> ! {
-    panic!("parameter `{key}` is not declared with the type asked for (found {found:?})")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    static PARAMETERS: &[Parameter] = &[
-        Parameter { name: "temperature", unit: "", help: "", kind: Kind::Real { default: 1.0, least: 0.0, most: 10.0 } },
-        Parameter { name: "particles", unit: "", help: "", kind: Kind::Whole { default: 10, least: 1, most: 100 } },
-        Parameter { name: "dimension", unit: "", help: "", kind: Kind::Choice { default: "2", options: &["2", "3"] } },
-        Parameter { name: "masses", unit: "", help: "", kind: Kind::List { default: &[], least: 0.0, most: 9.0, longest: 3 } },
-    ];
-
-    #[test]
-    fn values_are_read_from_text() {
-        let mut settings = Settings::new(PARAMETERS, 1);
-        for (key, text) in [("temperature", "2.5"), ("particles", "1e2"), ("dimension", "3"), ("masses", "[3, 4,5]")] {
-            settings.set_text(key, text).unwrap();
-        }
-        assert_eq!((settings.real("temperature"), settings.whole("particles")), (2.5, 100));
-        assert_eq!((settings.word("dimension"), settings.list("masses")), ("3", [3.0, 4.0, 5.0].as_slice()));
-        assert!(settings.is_given("masses"));
-    }
-
-    #[test]
-    fn nonsense_is_refused_by_name() {
-        let mut settings = Settings::new(PARAMETERS, 1);
-        for (key, text) in [
-            ("temperature", "NaN"),
-            ("temperature", "-1"),
-            ("temperature", "warm"),
-            ("particles", "0"),
-            ("particles", "-3"),
-            ("particles", "2.5"),
-            ("dimension", "4"),
-            ("masses", "1,2,3,4"),
-            ("masses", "1,x"),
-        ] {
-            let error = settings.set_text(key, text).unwrap_err();
-            assert_eq!((error.key.as_str(), error.value.as_str()), (key, text));
-            assert!(!error.expected.is_empty());
-        }
-        assert!(settings.set_text("temprature", "1").unwrap_err().expected.contains("temperature"));
-    }
 }

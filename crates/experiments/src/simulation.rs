@@ -7,7 +7,7 @@ use corpuscle_scene::Scene;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::Frame;
+use crate::{Frame, Probed};
 
 /// A running experiment.
 ///
@@ -70,12 +70,25 @@ pub trait Simulation: Send {
         None
     }
 
+    /// Lays a probe between two corners of a flat picture, or takes it up.
+    fn probe(&mut self, _corners: Option<[[f64; 2]; 2]>) {}
+
+    /// What the probe has seen since; none where contacts cannot be watched.
+    fn probed(&self) -> Option<Probed> {
+        None
+    }
+
+    /// What an action of this kind would need that is not here; none where it can be tried. The window says it beforehand.
+    fn refusal(&self, _action: Action) -> Option<&'static str> {
+        Some("another experiment: this one has no hands on it")
+    }
+
     /// Does something to the system now.
     ///
     /// # Errors
     /// Says so when this experiment cannot do it.
     fn act(&mut self, action: Action) -> Result<(), Invalid> {
-        action.refused("another experiment: this one has no hands on it")
+        action.allowed(self)
     }
 }
 
@@ -166,6 +179,28 @@ impl Action {
             Self::Add { .. } => "add",
             Self::Remove { .. } => "remove",
         }
+    }
+
+    /// One of each kind, to ask what can be done.
+    pub const EXAMPLES: [Self; 10] = [
+        Self::Reverse,
+        Self::Disturb { strength: 1e-6, seed: 0 },
+        Self::Place { body: 0, at: [0.0; 3] },
+        Self::Throw { body: 0, velocity: [0.0; 3] },
+        Self::Partition { axis: 0, at: 0.0, hole: None },
+        Self::OpenPartitions,
+        Self::Heat { axis: 0, upper: false, temperature: None },
+        Self::Push { velocity: [0.0; 3] },
+        Self::Add { at: [0.0; 3], velocity: [0.0; 3], like: 0 },
+        Self::Remove { body: 0 },
+    ];
+
+    /// Whether a simulation lets itself be touched in this way.
+    ///
+    /// # Errors
+    /// Its [`refusal`](Simulation::refusal).
+    pub(crate) fn allowed(self, simulation: &(impl Simulation + ?Sized)) -> Result<(), Invalid> {
+        simulation.refusal(self).map_or(Ok(()), |expected| self.refused(expected))
     }
 
     /// Refuses this action, and says what would have been needed for it.

@@ -9,11 +9,12 @@ use corpuscle_event::{EventDriven, Rules};
 use corpuscle_observe::{Chart, Check};
 use corpuscle_scene::Scene;
 
-use crate::hand::InHand;
+use crate::hand::{self, InHand};
 use crate::horizon::precision_horizon;
+use crate::probe::{self, Region};
 use crate::replicas::{Member, Replicas, energy_check, honesty};
 use crate::tally::Tally;
-use crate::{Action, Frame, Honesty, Simulation, drawing, peek};
+use crate::{Action, Frame, Honesty, Probed, Simulation, drawing, peek};
 
 /// A gas in a box, its measurement begun at some time on the engine's clock.
 pub(crate) struct Vessel<const D: usize> {
@@ -230,6 +231,23 @@ impl<const D: usize, S: Study<D>> Simulation for Running<D, S> {
         let vessel = self.on_show();
         let engine = self.in_hand.as_ref().map_or(&vessel.engine, |copy| &copy.engine);
         peek::next_contact(engine, 1.5 * self.duration).map(|time| time - vessel.started)
+    }
+
+    fn probe(&mut self, corners: Option<[[f64; 2]; 2]>) {
+        let vessel = self.specimens.members[0].vessel_mut();
+        let (engine, tally) =
+            self.in_hand.as_mut().map_or((&vessel.engine, &mut vessel.tally), |copy| (&copy.engine, &mut copy.tally));
+        tally.lay(corners.and_then(|corners| Region::lay(engine, corners)));
+    }
+
+    fn probed(&self) -> Option<Probed> {
+        let vessel = self.on_show();
+        let (engine, tally) = self.in_hand.as_ref().map_or((&vessel.engine, &vessel.tally), |copy| (&copy.engine, &copy.tally));
+        probe::read(engine, tally)
+    }
+
+    fn refusal(&self, action: Action) -> Option<&'static str> {
+        hand::wanting_of_number(&self.on_show().engine, action)
     }
 
     fn act(&mut self, action: Action) -> Result<(), Invalid> {

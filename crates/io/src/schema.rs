@@ -81,7 +81,9 @@ fn parameter(parameter: &Parameter) -> Value {
     let mut schema = match parameter.kind {
         Kind::Real { default, least, most } => json!({ "type": "number", "minimum": least, "maximum": most, "default": default }),
         Kind::Whole { default, least, most } => json!({ "type": "integer", "minimum": least, "maximum": most, "default": default }),
-        Kind::Choice { default, options } => json!({ "enum": words_and_numbers(options), "default": default }),
+        Kind::Choice { default, .. } | Kind::Situation { default, .. } => {
+            json!({ "enum": words_and_numbers(&parameter.words()), "default": default })
+        }
         Kind::Flag { default } => json!({ "type": "boolean", "default": default }),
         Kind::List { default, least, most, longest } => json!({
             "type": "array", "items": { "type": "number", "minimum": least, "maximum": most }, "maxItems": longest, "default": default,

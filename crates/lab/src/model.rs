@@ -276,7 +276,7 @@ impl Model {
             Command::ZoomIn => self.zoom(ZOOM, seen),
             Command::ZoomOut => self.zoom(1.0 / ZOOM, seen),
             Command::NextPaint => self.set_paint(self.preferences.paint.next()),
-            Command::NextTool => self.tool = self.tool.next(),
+            Command::NextTool => self.tool = self.tool.next(seen),
             Command::Stopwatch => self.stopwatch = self.stopwatch.pressed(seen.time),
             Command::RecordRow => {
                 self.notebook.record(&self.scenario, seen);
@@ -341,6 +341,14 @@ impl Model {
     pub fn set_speed(&mut self, factor: f64) {
         self.speed = factor.clamp(*SPEEDS.start(), *SPEEDS.end());
         self.order(Order::Speed(self.speed));
+    }
+
+    /// Lays the probe between two corners, or takes it up.
+    pub fn set_probe(&mut self, corners: Option<[[f64; 2]; 2]>) {
+        if corners != self.probe {
+            self.probe = corners;
+            self.order(Order::Probe(corners));
+        }
     }
 
     /// Marks a time on the timeline.
@@ -408,7 +416,8 @@ impl Model {
             Subject::Free(_) => self.preferences.experiment.take(),
         };
         self.scenario = scenario;
-        (self.camera, self.followed, self.ruler, self.probe) = (None, None, None, None);
+        (self.camera, self.followed, self.ruler) = (None, None, None);
+        self.set_probe(None);
         self.overlay = Overlay::None;
         self.typed.list = None;
         self.restart();
@@ -437,7 +446,7 @@ impl Model {
         let Subject::Experiment(experiment) = self.scenario.subject else { return };
         let mut scenario = Scenario::new(experiment);
         scenario.settings.seed = self.scenario.settings.seed;
-        scenario.duration = self.scenario.duration;
+        (scenario.duration, scenario.deeds) = (self.scenario.duration, self.scenario.deeds.clone());
         let kept = self.scenario.parameters().filter(|(known, _, given)| *given && known.name != parameter.name);
         let given: Vec<(&str, Value)> = kept.map(|(known, value, _)| (known.name, value.clone())).collect();
         let all = given.into_iter().chain(value.map(|value| (parameter.name, value)));

@@ -18,6 +18,7 @@ fn orders(model: &mut Model) -> String {
         Order::Beside(rival) => format!("beside {:?}", rival.as_ref().map(|(name, _)| name)),
         Order::NextEvent => "next".into(),
         Order::Act(action) => format!("{action:?}"),
+        Order::Probe(corners) => format!("probe {corners:?}"),
         Order::GoTo(time) => format!("to {time}"),
     };
     model.take_orders().iter().map(word).collect::<Vec<_>>().join(", ")

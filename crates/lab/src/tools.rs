@@ -5,6 +5,7 @@ use corpuscle_render::Projection;
 use corpuscle_scene::{Body, Scene};
 
 use crate::language::Text;
+use crate::runner::Snapshot;
 
 /// What the pointer does on the stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -63,16 +64,37 @@ impl Tool {
         }
     }
 
+    /// An action of the kind that it does; none of a tool that only looks.
+    pub fn action(self) -> Option<Action> {
+        let name = match self {
+            Self::Hand | Self::Ruler | Self::Probe => return None,
+            Self::Carry => "place",
+            Self::Throw => "throw",
+            Self::Add => "add",
+            Self::Remove => "remove",
+            Self::Partition => "put a partition in",
+            Self::Heat => "heat a wall",
+            Self::Piston => "push the piston",
+        };
+        Action::EXAMPLES.into_iter().find(|action| action.name() == name)
+    }
+
+    /// What it would need that is not here; none where it can be used.
+    pub fn refusal(self, seen: &Snapshot) -> Option<&'static str> {
+        self.action().and_then(|action| seen.refusal(action))
+    }
+
     /// Whether it changes the system, so that time stands still while it is being used.
     pub fn touches(self) -> bool {
         !matches!(self, Self::Hand | Self::Ruler | Self::Probe)
     }
 
-    /// The next one round.
+    /// The next one round that can be used.
     #[must_use]
-    pub fn next(self) -> Self {
+    pub fn next(self, seen: &Snapshot) -> Self {
         let place = Self::ALL.iter().position(|&tool| tool == self).unwrap_or(0);
-        Self::ALL[(place + 1) % Self::ALL.len()]
+        let mut round = Self::ALL.into_iter().cycle().skip(place + 1).take(Self::ALL.len());
+        round.find(|tool| tool.refusal(seen).is_none()).unwrap_or_default()
     }
 }
 

@@ -50,3 +50,28 @@ fn the_papers_experiments_speak_chinese_while_they_run() {
     println!("{} of {all} missing", missing.len());
     assert!(20 * missing.len() <= all, "not in phrases.tsv: {missing:#?}");
 }
+
+/// What experiments say when they refuse a hand, and the words for it.
+#[test]
+fn every_refusal_of_a_hand_is_translated() {
+    let situations: &[(&str, &str, &[&str])] = &[
+        ("wave", "preset", &["shaker", "resonance", "dispersion", "solitons", "doppler"]),
+        ("three-body", "preset", &["restricted"]),
+        ("three-body", "show", &["basins"]),
+    ];
+    let plain = REGISTRY.iter().map(|experiment| (experiment.name, None));
+    let chosen = situations.iter().flat_map(|&(name, key, words)| words.iter().map(move |&word| (name, Some((key, word)))));
+    for (name, set) in plain.chain(chosen) {
+        let mut scenario = Scenario::new(find(name).unwrap());
+        for (key, value) in set.into_iter().chain([("replicas", "3"), ("particles", "250"), ("resolution", "16")]) {
+            if scenario.settings.declaration(key).is_ok() {
+                scenario.set(key, value).unwrap();
+            }
+        }
+        let simulation = scenario.start().unwrap();
+        for action in corpuscle_experiments::Action::EXAMPLES {
+            let Some(needs) = simulation.refusal(action) else { continue };
+            assert_ne!(Language::Chinese.phrase(needs), needs, "{name} {set:?}");
+        }
+    }
+}

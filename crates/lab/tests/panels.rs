@@ -14,7 +14,7 @@ use corpuscle_scene::Scene;
 use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 
 /// A window on an experiment, with its simulation's thread.
 struct Window {
@@ -325,4 +325,164 @@ fn the_window_answers_while_the_engine_is_saturated() {
     }
     // Two frames of a screen take 33 ms; this machine may be shared, and the engine has a thread of its own on it.
     assert!(slowest < std::time::Duration::from_millis(500), "two frames took {slowest:?}");
+}
+
+/// The sliders show what the run takes, and those that it does not read are grey and say why.
+#[test]
+fn a_slider_shows_what_a_preset_sets() {
+    for language in Language::ALL {
+        let mut harness = window("wave", &[("preset", "solitons")], language, [1280.0, 800.0]);
+        harness.run_steps(2);
+        let name = language.parameter("wave", "masses");
+        let shown = harness.get_by_role_and_label(Role::Slider, &name).accesskit_node().numeric_value();
+        assert_eq!(shown, Some(300.0));
+        let (preset, choice) = (language.parameter("wave", "preset"), language.choice("solitons"));
+        let words = language.fill(Text::NotUsed, &[&preset, &choice]);
+        let grey = |key: &str| format!("{}: {words}", language.parameter("wave", key));
+        assert!(harness.query_by_label(&grey("density_ratio")).is_some(), "{}", grey("density_ratio"));
+        assert!(harness.query_by_label(&grey("masses")).is_none());
+    }
+}
+
+/// What a file does stands on the timeline and in the notebook from the beginning, beside what hands do.
+#[test]
+fn deeds_of_a_file_are_listed() {
+    for language in Language::ALL {
+        let text = "experiment = 'ideal-gas'\n[parameters]\nparticles = 20\nreplicas = 3\ndense_packings = []\n\
+                    [[deed]]\nat = 3.0\nact = 'reverse'\n[[deed]]\nat = 7.5\nact = { throw = { body = 4, velocity = [1.0, 0.0, 0.0] } }\n";
+        let scenario = Scenario::parse(REGISTRY, text, std::path::Path::new("deeds.toml")).unwrap();
+        let preferences = Preferences { language, hints_seen: 9, ..Preferences::default() };
+        let runner = Runner::start(scenario.clone(), || {}).unwrap();
+        let mut harness = harness_of(Window { model: Model::new(REGISTRY, scenario, preferences), runner }, [1280.0, 800.0]);
+        harness.state_mut().model.tab = Tab::Notebook;
+        harness.run_steps(3);
+        assert!(harness.query_by_label(language.text(Text::DeedsOfFile)).is_some());
+        assert!(harness.query_by_label(&format!("t = 3: {}", language.text(Text::DidReverse))).is_some());
+        let thrown = language.fill(Text::DidThrow, &["4"]);
+        assert!(harness.query_by_label(&format!("t = 7.5: {thrown}")).is_some());
+        // The pointer reads a mark on the line of time.
+        let line = harness.get_by_label_contains(language.text(Text::Timeline)).rect();
+        let end = harness.state().runner.snapshot().end;
+        let x = line.left() + 7.0 + (line.width() - 69.0) * (7.5 / end) as f32;
+        harness.hover_at(egui::pos2(x, line.center().y - 6.0));
+        harness.run_steps(40);
+        let tip = format!("{}: t = 7.5: {thrown}", language.text(Text::DeedsOfFile));
+        assert!(harness.query_by_label(&tip).is_some(), "{tip}");
+    }
+}
+
+/// A tool that an experiment refuses is grey, cannot be chosen, and says what it would need.
+#[test]
+fn refused_tools_are_grey_and_say_why() {
+    use corpuscle_lab::tools::Tool;
+    let mut harness = window("galton", &[("replicas", "2"), ("balls", "20")], Language::English, [1280.0, 800.0]);
+    harness.run_steps(2);
+    let name = Language::English.text(Tool::Throw.text());
+    let button = harness.get_by_label(name);
+    assert!(button.accesskit_node().is_disabled());
+    let at = button.rect().center();
+    harness.hover_at(at);
+    harness.run_steps(40);
+    assert!(harness.query_by_label_contains("each of these is one draw").is_some());
+    press(&mut harness, Key::T);
+    assert_eq!(harness.state().model.tool, Tool::Ruler);
+}
+
+/// Drags across the stage between two places of the picture, or clicks where both are the same.
+fn touch(harness: &mut Harness<'static, Window>, from: [f64; 3], to: [f64; 3]) {
+    use corpuscle_render::{Projection, Rectangle};
+    let stage = harness.get_by_label("Stage").rect();
+    let size = [f64::from(stage.width()), f64::from(stage.height())];
+    let rectangle = Rectangle { left: 0.0, top: 0.0, width: size[0], height: size[1] };
+    let projection = Projection::new(harness.state().runner.snapshot().scene.camera, size, rectangle);
+    let spot = |place: [f64; 3]| {
+        let [x, y] = projection.pixel(place).unwrap();
+        stage.min + egui::vec2(x as f32, y as f32)
+    };
+    let (from, to) = (spot(from), spot(to));
+    harness.drag_at(from);
+    harness.run_steps(2);
+    if from != to {
+        harness.hover_at(from + 0.5 * (to - from));
+        harness.run_steps(2);
+        harness.hover_at(to);
+        harness.run_steps(2);
+    }
+    harness.drop_at(to);
+    harness.run_steps(2);
+}
+
+fn choose(harness: &mut Harness<'static, Window>, tool: corpuscle_lab::tools::Tool) {
+    harness.get_by_label(Language::English.text(tool.text())).click();
+    harness.run_steps(2);
+    assert_eq!(harness.state().model.tool, tool);
+}
+
+/// Piston, heat bath, partition with a hole, and their way back: each with the pointer, on the stage.
+#[test]
+fn the_tools_of_the_box_reach_the_system() {
+    use corpuscle_experiments::Action;
+    use corpuscle_lab::tools::Tool;
+    let quick = [("particles", "20"), ("replicas", "3")];
+    let mut harness = window("ideal-gas", &[quick[0], quick[1], ("process", "piston")], Language::English, [1280.0, 800.0]);
+    harness.run_steps(3);
+    choose(&mut harness, Tool::Piston);
+    let [lower, upper] = harness.state().runner.snapshot().scene.bounds.unwrap();
+    let at = |x: f64, y: f64| [lower[0] + x * (upper[0] - lower[0]), lower[1] + y * (upper[1] - lower[1]), 0.0];
+    touch(&mut harness, at(0.5, 0.5), at(0.6, 0.5));
+    until(
+        &mut harness,
+        "the push",
+        |window| matches!(window.runner.snapshot().deeds[..], [(_, Action::Push { velocity })] if velocity[0] > 0.0),
+    );
+    assert!(harness.state().runner.snapshot().fault.is_none());
+
+    let dense = ("dense_packings", "[]");
+    let mut harness = window("ideal-gas", &[quick[0], quick[1], dense], Language::English, [1280.0, 800.0]);
+    harness.run_steps(3);
+    let [lower, upper] = harness.state().runner.snapshot().scene.bounds.unwrap();
+    let at = |x: f64, y: f64| [lower[0] + x * (upper[0] - lower[0]), lower[1] + y * (upper[1] - lower[1]), 0.0];
+    choose(&mut harness, Tool::Heat);
+    touch(&mut harness, at(0.98, 0.5), at(0.98, 0.5));
+    until(&mut harness, "the warm wall", |window| {
+        let warm = Action::Heat { axis: 0, upper: true, temperature: Some(4.0) };
+        window.runner.snapshot().deeds.last().map(|deed| deed.1) == Some(warm)
+    });
+    assert!(harness.state().runner.snapshot().scene.labels.iter().any(|label| label.text == "kT = 4"));
+    choose(&mut harness, Tool::Partition);
+    touch(&mut harness, at(0.4, 0.5), at(0.4, 0.5));
+    until(&mut harness, "the plate", |window| {
+        let scene = &window.runner.snapshot().scene;
+        let x = lower[0] + 0.4 * (upper[0] - lower[0]);
+        // Two strips, with the hole between them.
+        scene.lines.iter().filter(|line| (line.from[0] - x).abs() < 0.01 * x && line.from[0] == line.to[0]).count() == 2
+    });
+    press(&mut harness, Key::O);
+    until(&mut harness, "no plate", |window| {
+        window.runner.snapshot().deeds.last().map(|deed| deed.1) == Some(Action::OpenPartitions)
+    });
+    assert!(harness.state().runner.snapshot().fault.is_none());
+
+    choose(&mut harness, Tool::Probe);
+    touch(&mut harness, at(0.1, 0.1), at(0.9, 0.9));
+    press(&mut harness, Key::Space);
+    until(&mut harness, "collisions in the probe", |window| {
+        window.runner.snapshot().probed.is_some_and(|probed| probed.contacts > 5 && probed.collisional.is_some())
+    });
+}
+
+/// A mass of the chain is plucked by dragging it across, and is drawn where it was let go.
+#[test]
+fn a_chain_is_plucked_with_the_pointer() {
+    use corpuscle_experiments::Action;
+    use corpuscle_lab::tools::Tool;
+    let mut harness = window("wave", &[("preset", "fixed-end")], Language::English, [1280.0, 800.0]);
+    harness.run_steps(3);
+    choose(&mut harness, Tool::Carry);
+    let from = harness.state().runner.snapshot().scene.bodies[70].position;
+    let to = [from[0], from[1] + 8.0, 0.0];
+    touch(&mut harness, from, to);
+    until(&mut harness, "the pluck", |window| matches!(window.runner.snapshot().deeds[..], [(_, Action::Place { body: 70, .. })]));
+    let snapshot = harness.state().runner.snapshot();
+    assert!(snapshot.fault.is_none() && (snapshot.scene.bodies[70].position[1] - to[1]).abs() < 0.5);
 }

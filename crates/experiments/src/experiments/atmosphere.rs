@@ -19,9 +19,10 @@ use corpuscle_observe::{Chart, Check, Estimate};
 use corpuscle_scene::{Camera, Colouring, Scene};
 
 use crate::gas::{self, Species};
+use crate::hand::{self, InHand};
 use crate::replicas::{Member, Replicas, Watch, energy_check, honesty};
 use crate::tally::Tally;
-use crate::{Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, peek};
+use crate::{Action, Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, peek};
 use theory::Profile;
 
 /// The registry's entry.
@@ -279,9 +280,10 @@ struct Atmosphere<const D: usize> {
     set: Set<D>,
     duration: f64,
     columns: Replicas<Column<D>>,
+    in_hand: Option<InHand<D>>,
 }
 
-resume!(Atmosphere<const D> { values: [], parts: [columns], set_up: [set, duration] });
+resume!(Atmosphere<const D> { values: [], parts: [columns], set_up: [set, duration, in_hand] });
 
 impl<const D: usize> Atmosphere<D> {
     fn new(settings: &Settings) -> Result<Self, Invalid> {
@@ -290,7 +292,7 @@ impl<const D: usize> Atmosphere<D> {
         let members = ensemble::build(&streams, |&stream| Column::new(&set, stream))?;
         let duration = settings.real("duration") * set.rise;
         let columns = Replicas::new(set.rise / RESOLUTION, members);
-        Ok(Self { set, duration, columns })
+        Ok(Self { set, duration, columns, in_hand: None })
     }
 
     /// Mean height of a species.
@@ -395,13 +397,15 @@ impl<const D: usize> Simulation for Atmosphere<D> {
     }
 
     fn advance(&mut self, to: f64) -> Result<(), Failure> {
-        self.columns.advance(to)
+        self.columns.advance(to)?;
+        InHand::advance_any(&mut self.in_hand, self.columns.members[0].started + to)
     }
 
     fn draw(&self, scene: &mut Scene) {
         scene.clear();
         let column = &self.columns.members[0];
-        drawing::add_event_driven(scene, &column.engine, &Tally::default(), column.started, |i| f64::from(column.species[i]));
+        let engine = InHand::on_show(self.in_hand.as_ref(), &column.engine);
+        drawing::add_event_driven(scene, engine, &Tally::default(), column.started, |i| f64::from(column.species[i]));
         scene.colouring = Colouring::Species(vec!["light".into(), "heavy".into()]);
         // The thin upper half is left out of the first view.
         let mut upper = self.set.boundary.upper.to_three();
@@ -411,7 +415,7 @@ impl<const D: usize> Simulation for Atmosphere<D> {
         let scale = |mass: f64| self.set.temperature / (mass * self.set.gravity);
         let mean = |s: u16| {
             let of_species = (0..column.species.len()).filter(|&i| column.species[i] == s);
-            let heights = of_species.map(|i| self.set.height(column.engine.position(i)));
+            let heights = of_species.map(|i| self.set.height(engine.position(i)));
             heights.sum::<f64>() / self.set.species[usize::from(s)].count as f64
         };
         scene.caption = format!(
@@ -461,6 +465,15 @@ impl<const D: usize> Simulation for Atmosphere<D> {
 
     fn next_event(&self) -> Option<f64> {
         let column = &self.columns.members[0];
-        peek::next_contact(&column.engine, 1.5 * self.duration).map(|time| time - column.started)
+        peek::next_contact(InHand::on_show(self.in_hand.as_ref(), &column.engine), 1.5 * self.duration)
+            .map(|time| time - column.started)
+    }
+
+    fn refusal(&self, action: Action) -> Option<&'static str> {
+        hand::wanting_of_number(&self.columns.members[0].engine, action)
+    }
+
+    fn act(&mut self, action: Action) -> Result<(), Invalid> {
+        InHand::act(&mut self.in_hand, &self.columns.members[0].engine, &Tally::default(), action)
     }
 }

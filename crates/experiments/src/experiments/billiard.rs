@@ -19,9 +19,10 @@ use corpuscle_observe::chart::{Axis, Scale, Series, Style};
 use corpuscle_observe::{Chart, Check, Curves, Estimate};
 use corpuscle_scene::{Colour, Colouring, Scene, TrailPoint};
 
+use crate::hand::{self, InHand};
 use crate::replicas::{Replicas, energy_check, honesty};
 use crate::tally::Tally;
-use crate::{Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, peek};
+use crate::{Action, Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, Situation, drawing, ensemble, peek};
 use table::{Layout, Table, Twins};
 
 /// The registry's entry.
@@ -36,12 +37,18 @@ pub(crate) static EXPERIMENT: Experiment = Experiment {
     start,
 };
 
+const LAYOUTS: &[Situation] = &[
+    Situation::new("random", &[]),
+    Situation::new("square", &[&["scatterers"]]),
+    Situation::new("triangular", &[&["scatterers"]]),
+];
+
 static PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "layout",
         unit: "",
         help: "Where the scatterers stand: anywhere (the Lorentz gas), on a square lattice (Sinai), on a triangular one.",
-        kind: Kind::Choice { default: "random", options: &["random", "square", "triangular"] },
+        kind: Kind::Situation { default: "random", options: LAYOUTS },
     },
     Parameter {
         name: "coverage",
@@ -96,9 +103,10 @@ struct Billiard {
     duration: f64,
     tables: Replicas<Table>,
     twins: Twins,
+    in_hand: Option<InHand<2>>,
 }
 
-resume!(Billiard { values: [], parts: [tables, twins], set_up: [layout, duration] });
+resume!(Billiard { values: [], parts: [tables, twins], set_up: [layout, duration, in_hand] });
 
 impl Billiard {
     fn new(settings: &Settings) -> Result<Self, Invalid> {
@@ -108,7 +116,7 @@ impl Billiard {
         let interval = layout.free_path() / RESOLUTION;
         let twins = Twins::new(&members[0], interval)?;
         let duration = settings.real("duration") * layout.free_path();
-        Ok(Self { layout, duration, tables: Replicas::new(interval, members), twins })
+        Ok(Self { layout, duration, tables: Replicas::new(interval, members), twins, in_hand: None })
     }
 
     /// Sample from which on fronts are those of an old path.
@@ -224,15 +232,18 @@ impl Simulation for Billiard {
 
     fn advance(&mut self, to: f64) -> Result<(), Failure> {
         self.tables.advance(to)?;
-        self.twins.advance(to)
+        self.twins.advance(to)?;
+        InHand::advance_any(&mut self.in_hand, to)
     }
 
     fn draw(&self, scene: &mut Scene) {
         scene.clear();
         let bundle = self.twins.bundle();
-        drawing::add_event_driven(scene, bundle, &Tally::default(), 0.0, |i| i as f64);
+        let engine = InHand::on_show(self.in_hand.as_ref(), bundle);
+        drawing::add_event_driven(scene, engine, &Tally::default(), 0.0, |i| i as f64);
         scene.colouring = Colouring::Uniform(Colour::Accent(1));
         let boundary = bundle.boundary();
+        // The trails are those of rays that no hand has turned.
         for ray in 0..TRAILS.min(bundle.particle_count()) {
             let trail = scene.trail(ray as u32, TRAIL, Colour::Accent((ray % 7) as u8));
             let drawn = trail.points().back().map_or(-1.0, |point| point.time);
@@ -316,6 +327,14 @@ impl Simulation for Billiard {
     }
 
     fn next_event(&self) -> Option<f64> {
-        peek::next_contact(self.twins.bundle(), 1.5 * self.duration)
+        peek::next_contact(InHand::on_show(self.in_hand.as_ref(), self.twins.bundle()), 1.5 * self.duration)
+    }
+
+    fn refusal(&self, action: Action) -> Option<&'static str> {
+        hand::wanting_of_number(self.twins.bundle(), action)
+    }
+
+    fn act(&mut self, action: Action) -> Result<(), Invalid> {
+        InHand::act(&mut self.in_hand, self.twins.bundle(), &Tally::default(), action)
     }
 }

@@ -18,7 +18,7 @@ mod sweep;
 
 use corpuscle_core::Invalid;
 
-use crate::{Experiment, Kind, Parameter, Settings, Simulation, gas};
+use crate::{Experiment, Kind, Parameter, Settings, Simulation, Situation, gas};
 use path::Brownian;
 use set::Set;
 use sweep::Sweep;
@@ -35,12 +35,18 @@ pub(crate) static EXPERIMENT: Experiment = Experiment {
     start,
 };
 
+const SWEEPS: &[Situation] = &[
+    Situation::new("none", &[&["masses", "radii"]]),
+    Situation::new("mass", &[&["mass", "radii"]]),
+    Situation::new("radius", &[&["radius", "masses"]]),
+];
+
 static PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "sweep",
         unit: "",
         help: "One heavy particle, or several kinds side by side, of different masses or radii.",
-        kind: Kind::Choice { default: "none", options: &["none", "mass", "radius"] },
+        kind: Kind::Situation { default: "none", options: SWEEPS },
     },
     gas::DIMENSION,
     Parameter {

@@ -21,9 +21,10 @@ use corpuscle_observe::{Chart, Check, Estimate, theory};
 use corpuscle_scene::{Colouring, Scene};
 
 use crate::gas;
+use crate::hand::{self, InHand};
 use crate::replicas::{Replicas, energy_check, honesty};
 use crate::tally::Tally;
-use crate::{Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, peek};
+use crate::{Action, Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, peek};
 use vessel::{BINS, Set, Vessel};
 
 /// The registry's entry.
@@ -95,9 +96,10 @@ struct Diffusion<const D: usize> {
     set: Set<D>,
     duration: f64,
     vessels: Replicas<Vessel<D>>,
+    in_hand: Option<InHand<D>>,
 }
 
-resume!(Diffusion<const D> { values: [], parts: [vessels], set_up: [set, duration] });
+resume!(Diffusion<const D> { values: [], parts: [vessels], set_up: [set, duration, in_hand] });
 
 impl<const D: usize> Diffusion<D> {
     fn new(settings: &Settings) -> Result<Self, Invalid> {
@@ -106,7 +108,7 @@ impl<const D: usize> Diffusion<D> {
         let members = ensemble::build(&streams, |&stream| Vessel::new(&set, stream))?;
         // Between two samples: whether the last one is taken does not hang on a rounding.
         let duration = ((settings.real("duration") * RESOLUTION).ceil() + 0.5) * set.fading() / RESOLUTION;
-        Ok(Self { duration, vessels: Replicas::new(set.fading() / RESOLUTION, members), set })
+        Ok(Self { duration, vessels: Replicas::new(set.fading() / RESOLUTION, members), set, in_hand: None })
     }
 
     /// Friction of collisions, exact given the contact value.
@@ -250,14 +252,16 @@ impl<const D: usize> Simulation for Diffusion<D> {
     }
 
     fn advance(&mut self, to: f64) -> Result<(), Failure> {
-        self.vessels.advance(to)
+        self.vessels.advance(to)?;
+        InHand::advance_any(&mut self.in_hand, self.vessels.members[0].started + to)
     }
 
     fn draw(&self, scene: &mut Scene) {
         scene.clear();
         let vessel = &self.vessels.members[0];
         let shade = |i: usize| f64::from(u8::from(vessel.is_marked(i)));
-        drawing::add_event_driven(scene, &vessel.engine, &Tally::default(), vessel.started, shade);
+        let engine = InHand::on_show(self.in_hand.as_ref(), &vessel.engine);
+        drawing::add_event_driven(scene, engine, &Tally::default(), vessel.started, shade);
         scene.colouring = Colouring::Species(vec!["gas".into(), "drop".into()]);
         scene.title = EXPERIMENT.title.into();
         let ratio = |diffusion: f64| diffusion / self.set.enskog();
@@ -314,6 +318,15 @@ impl<const D: usize> Simulation for Diffusion<D> {
 
     fn next_event(&self) -> Option<f64> {
         let vessel = &self.vessels.members[0];
-        peek::next_contact(&vessel.engine, 1.5 * self.duration).map(|time| time - vessel.started)
+        peek::next_contact(InHand::on_show(self.in_hand.as_ref(), &vessel.engine), 1.5 * self.duration)
+            .map(|time| time - vessel.started)
+    }
+
+    fn refusal(&self, action: Action) -> Option<&'static str> {
+        hand::wanting_of_number(&self.vessels.members[0].engine, action)
+    }
+
+    fn act(&mut self, action: Action) -> Result<(), Invalid> {
+        InHand::act(&mut self.in_hand, &self.vessels.members[0].engine, &Tally::default(), action)
     }
 }

@@ -25,7 +25,7 @@ use corpuscle_scene::{Body, Camera, Colour, Colouring, Label, Scene};
 
 use crate::replicas::{Replicas, energy_check, honesty};
 use crate::tally::Tally;
-use crate::{Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, Table, drawing, ensemble, peek};
+use crate::{Action, Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, Table, drawing, ensemble, peek};
 use chords::STEPS;
 use pair::{Pair, Sample, Set};
 
@@ -333,5 +333,9 @@ impl Simulation for Engines {
 
     fn next_event(&self) -> Option<f64> {
         peek::next_contact(&self.pairs.members[0].hard, 1.5 * self.duration)
+    }
+
+    fn refusal(&self, _: Action) -> Option<&'static str> {
+        Some("one engine: here two are compared from one start, which a hand would change")
     }
 }

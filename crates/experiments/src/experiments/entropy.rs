@@ -19,7 +19,7 @@ use corpuscle_observe::theory;
 
 use crate::gas;
 use crate::study::Vessel;
-use crate::{Experiment, Kind, Parameter, Settings, Simulation};
+use crate::{Experiment, Kind, Parameter, Settings, Simulation, Situation};
 use opening::Entropy;
 use room::Process;
 
@@ -35,16 +35,23 @@ pub(crate) static EXPERIMENT: Experiment = Experiment {
     start,
 };
 
+const PROCESSES: &[Situation] = &[
+    Situation::new("expansion", &[&["perturbations", "start", "rule"]]),
+    Situation::new("mixing", &[&["perturbations", "start", "rule"]]),
+    Situation::new("effusion", &[&["cells", "reverse_at", "perturbations", "start", "rule"]]),
+    Situation::new("echo", &[&["hole_width", "cells", "reverse_at", "start", "rule"]]),
+    Situation::new("recurrence", &[&["hole_width", "cells", "reverse_at", "perturbations", "start", "rule"]]),
+    Situation::new("relaxation", &[&["hole_width", "cells", "reverse_at", "perturbations", "rule"]]),
+    Situation::new("demon", &[&["cells", "reverse_at", "perturbations", "start"]]),
+];
+
 static PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "process",
         unit: "",
         help: "What happens: free expansion or mixing (both are measured, one is shown), effusion through a hole, Loschmidt's echo, \
                recurrence of few particles, relaxation of speeds (Boltzmann's H), Maxwell's demon.",
-        kind: Kind::Choice {
-            default: "expansion",
-            options: &["expansion", "mixing", "effusion", "echo", "recurrence", "relaxation", "demon"],
-        },
+        kind: Kind::Situation { default: "expansion", options: PROCESSES },
     },
     gas::DIMENSION,
     Parameter {
@@ -181,14 +188,15 @@ impl<const D: usize> Set<D> {
             );
         }
         let hole_width = settings.real("hole_width");
-        if hole_width > 0.0 && !(2.0 * radius < hole_width && hole_width <= width) {
+        let read = |key: &str| settings.idle_under(key).is_none();
+        if read("hole_width") && hole_width > 0.0 && !(2.0 * radius < hole_width && hole_width <= width) {
             return Err(settings.invalid(
                 "hole_width",
                 format!("0, or more than a diameter {} and at most the box's width {width:.3}", 2.0 * radius),
             ));
         }
         let cells_along = settings.whole("cells");
-        if cells_along % 2 == 1 {
+        if read("cells") && cells_along % 2 == 1 {
             return Err(settings.invalid("cells", "an even number: half of the cells lie left of the partition"));
         }
         let temperature = settings.real("temperature");

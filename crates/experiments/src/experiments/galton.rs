@@ -20,7 +20,7 @@ use corpuscle_observe::{Chart, Check, Estimate};
 use corpuscle_scene::Scene;
 
 use crate::replicas::{Replicas, honesty};
-use crate::{Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, Table, ensemble, peek};
+use crate::{Action, Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, Table, ensemble, peek};
 use board::{Board, Landed, Set};
 use walk::{Walk, binomial};
 
@@ -304,5 +304,9 @@ impl Simulation for Galton {
 
     fn next_event(&self) -> Option<f64> {
         peek::next_contact(&self.boards.members[0].engine, 1.5 * self.end)
+    }
+
+    fn refusal(&self, _: Action) -> Option<&'static str> {
+        Some("a board whose balls nobody counts: each of these is one draw of the chance that is measured")
     }
 }

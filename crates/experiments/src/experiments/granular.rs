@@ -20,9 +20,10 @@ use corpuscle_observe::{Chart, Check, Estimate, theory};
 use corpuscle_scene::{Colouring, Scene};
 
 use crate::gas::{self, Species};
+use crate::hand::{self, InHand};
 use crate::replicas::{Member, Replicas, honesty};
 use crate::tally::Tally;
-use crate::{Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, peek};
+use crate::{Action, Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, peek};
 
 /// The registry's entry.
 pub(crate) static EXPERIMENT: Experiment = Experiment {
@@ -189,6 +190,7 @@ struct Granular<const D: usize> {
     duration: f64,
     boxes: Replicas<Grains<D>>,
     crowd: Replicas<Crowd<D>>,
+    in_hand: Option<InHand<D>>,
 }
 
 /// The grains on show, and how they clump.
@@ -214,7 +216,7 @@ impl<const D: usize> Member for Crowd<D> {
     }
 }
 
-resume!(Granular<const D> { values: [], parts: [boxes, crowd], set_up: [restitution, freedom, cooling, crowd_cooling, duration] });
+resume!(Granular<const D> { values: [], parts: [boxes, crowd], set_up: [restitution, freedom, cooling, crowd_cooling, duration, in_hand] });
 
 impl<const D: usize> Granular<D> {
     fn new(settings: &Settings) -> Result<Self, Invalid> {
@@ -242,6 +244,7 @@ impl<const D: usize> Granular<D> {
             duration: settings.real("duration") * cooling_time,
             boxes: Replicas::new(interval, boxes),
             crowd: Replicas::new(interval, vec![Crowd { grains, clumping: vec![] }]),
+            in_hand: None,
         })
     }
 
@@ -331,13 +334,15 @@ impl<const D: usize> Simulation for Granular<D> {
 
     fn advance(&mut self, to: f64) -> Result<(), Failure> {
         self.boxes.advance(to)?;
-        self.crowd.advance(to)
+        self.crowd.advance(to)?;
+        InHand::advance_any(&mut self.in_hand, self.crowd.members[0].grains.started + to)
     }
 
     fn draw(&self, scene: &mut Scene) {
         scene.clear();
         let crowd = &self.crowd.members[0].grains;
-        drawing::add_event_driven(scene, &crowd.engine, &Tally::default(), crowd.started, |_| 0.0);
+        let engine = InHand::on_show(self.in_hand.as_ref(), &crowd.engine);
+        drawing::add_event_driven(scene, engine, &Tally::default(), crowd.started, |_| 0.0);
         let temperature = crowd.temperature();
         scene.colouring = Colouring::Speed { most: 2.5 * (D as f64 * temperature).sqrt(), unit: String::new() };
         scene.title = EXPERIMENT.title.into();
@@ -410,6 +415,15 @@ impl<const D: usize> Simulation for Granular<D> {
     }
 
     fn next_event(&self) -> Option<f64> {
-        peek::next_contact(&self.crowd.members[0].grains.engine, 1.5 * self.duration)
+        let engine = InHand::on_show(self.in_hand.as_ref(), &self.crowd.members[0].grains.engine);
+        peek::next_contact(engine, 1.5 * self.duration)
+    }
+
+    fn refusal(&self, action: Action) -> Option<&'static str> {
+        hand::wanting_of_number(&self.crowd.members[0].grains.engine, action)
+    }
+
+    fn act(&mut self, action: Action) -> Result<(), Invalid> {
+        InHand::act(&mut self.in_hand, &self.crowd.members[0].grains.engine, &Tally::default(), action)
     }
 }

@@ -19,9 +19,19 @@ mod warm_walls;
 use corpuscle_core::{Axis, Invalid};
 
 use crate::simulation::Simulation;
-use crate::{Experiment, Kind, Parameter, Settings, gas};
+use crate::{Experiment, Kind, Parameter, Settings, Situation, gas};
 use laws::Laboratory;
 use system::State;
+
+const PROCESSES: &[Situation] = &[
+    Situation::new("laws", &[&["temperatures", "speeds", "piston_mass", "heavy_mass"]]),
+    Situation::new("isotherms", &[&["span", "points", "speeds", "piston_mass", "heavy_mass"]]),
+    Situation::new("isobars", &[&["dense_packings", "temperatures", "speeds", "heavy_mass"]]),
+    Situation::new("adiabat", &[&["span", "points", "dense_packings", "temperatures", "piston_mass", "heavy_mass", "duration"]]),
+    Situation::new("piston", &[&["span", "points", "dense_packings", "temperatures", "speeds", "heavy_mass", "duration"]]),
+    Situation::new("warm-walls", &[&["span", "points", "dense_packings", "temperatures", "speeds", "piston_mass", "heavy_mass"]]),
+    Situation::new("mixture", &[&["span", "points", "dense_packings", "temperatures", "speeds", "piston_mass"]]),
+];
 
 /// The experiment.
 pub(crate) static EXPERIMENT: Experiment = Experiment {
@@ -38,10 +48,7 @@ pub(crate) static EXPERIMENT: Experiment = Experiment {
             help: "What is done: the sweeps of the laws, temperatures or volumes held up to dense fluids (isotherms), pressure held by \
                    a loaded piston (isobars), a slow and a fast compression (adiabat), a piston under a constant force, walls with a \
                    temperature, a mixture of two gases.",
-            kind: Kind::Choice {
-                default: "laws",
-                options: &["laws", "isotherms", "isobars", "adiabat", "piston", "warm-walls", "mixture"],
-            },
+            kind: Kind::Situation { default: "laws", options: PROCESSES },
         },
         gas::DIMENSION,
         Parameter {

@@ -18,7 +18,7 @@ use corpuscle_observe::{Chart, Check, Estimate, RadialDistribution, Schedule, bl
 use corpuscle_scene::{Colouring, Scene};
 use corpuscle_time::{Force, Integrator, LennardJones, PairForce, TimeDriven};
 
-use crate::{Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, drawing};
+use crate::{Action, Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, drawing, hand};
 
 /// The registry's entry.
 pub(crate) static EXPERIMENT: Experiment = Experiment {
@@ -100,6 +100,12 @@ enum Phase {
 const NIST: &str = "NIST Standard Reference Simulation Website, doi:10.18434/T4M88Q: constant volume, T = 0.85";
 
 impl State {
+    /// The force between atoms.
+    fn forces(&self) -> Vec<Box<dyn Force<3>>> {
+        let force = PairForce::new(LennardJones { epsilon: 1.0, sigma: 1.0, cutoff: CUTOFF });
+        vec![Box::new(if self.phase == Phase::Gas { force } else { force.unshifted() })]
+    }
+
     /// The state of this name, of so many particles.
     fn named(word: &str, count: usize) -> Self {
         let published = |density: f64, energy: Estimate, pressure: Estimate| Self {
@@ -197,12 +203,23 @@ struct Fluid {
     started: f64,
     /// Of a crystal, with its shells of neighbours.
     crystal: Option<(solid::Crystal, Vec<solid::Shell>)>,
+    in_hand: Option<Held>,
 }
+
+/// A copy that a hand plays with while the measurement goes on: a fluid that starts where the other one is.
+struct Held {
+    engine: TimeDriven<3>,
+    /// Time of its start, on the other one's clock.
+    since: f64,
+}
+
+/// Radius of the room that a carried atom needs: closer than `0.9 sigma` the repulsion is a blow.
+const ROOM: f64 = 0.45;
 
 resume!(Fluid {
     values: [schedule, energies, pressures, temperatures, structure],
     parts: [engine],
-    set_up: [state, duration, started, crystal],
+    set_up: [state, duration, started, crystal, in_hand],
 });
 
 impl Fluid {
@@ -224,11 +241,7 @@ impl Fluid {
             particles.push(place, Vector::ZERO, 1.0, 0.0, 0);
         }
         placement::maxwell(&mut particles, state.temperature, true, &mut random);
-        let mut force = PairForce::new(LennardJones { epsilon: 1.0, sigma: 1.0, cutoff: CUTOFF });
-        if state.phase != Phase::Gas {
-            force = force.unshifted();
-        }
-        let forces: Vec<Box<dyn Force<3>>> = vec![Box::new(force)];
+        let forces = state.forces();
         let (temperature, seed) = (state.temperature, settings.seed);
         let integrator = if state.phase == Phase::Solid {
             // The modes of a cold crystal hardly know of each other: each needs a bath of its own.
@@ -256,7 +269,22 @@ impl Fluid {
             structure,
             started,
             crystal,
+            in_hand: None,
         })
+    }
+
+    /// What is drawn.
+    fn on_show(&self) -> &TimeDriven<3> {
+        self.in_hand.as_ref().map_or(&self.engine, |held| &held.engine)
+    }
+
+    /// What a hand plays with, as it is now.
+    fn held(&self) -> Result<Held, Invalid> {
+        let mut particles = self.engine.snapshot();
+        particles.radius.fill(ROOM);
+        let engine =
+            TimeDriven::new(self.engine.boundary().clone(), particles, self.state.forces(), self.engine.integrator().clone())?;
+        Ok(Held { engine, since: self.engine.time() })
     }
 
     fn take_sample(&mut self) {
@@ -338,12 +366,14 @@ impl Simulation for Fluid {
             self.engine.advance(self.started + time, &mut ())?;
             self.take_sample();
         }
-        self.engine.advance(self.started + to, &mut ())
+        self.engine.advance(self.started + to, &mut ())?;
+        let held = self.in_hand.as_mut();
+        held.map_or(Ok(()), |held| held.engine.advance(self.started + to - held.since, &mut ()))
     }
 
     fn draw(&self, scene: &mut Scene) {
         scene.clear();
-        let particles = self.engine.particles();
+        let particles = self.on_show().particles();
         scene.time = self.time();
         drawing::add_particles(scene, scene.time, particles, |_| 0.5);
         drawing::add_boundary(scene, self.engine.boundary(), scene.time);
@@ -416,6 +446,22 @@ impl Simulation for Fluid {
             work_unit: "steps",
             ..Honesty::default()
         }
+    }
+
+    fn refusal(&self, action: Action) -> Option<&'static str> {
+        hand::wanting_of_soft_number(action)
+    }
+
+    /// A reversal does not lead back: the bath's random forces do not know of it.
+    fn act(&mut self, action: Action) -> Result<(), Invalid> {
+        action.allowed(self)?;
+        let mut held = match self.in_hand.take() {
+            Some(held) => held,
+            None => self.held()?,
+        };
+        let outcome = hand::on_soft(&mut held.engine, action);
+        self.in_hand = Some(held);
+        outcome
     }
 }
 

@@ -18,7 +18,7 @@ use corpuscle_observe::chart::{Axis, Scale, Series, Style};
 use corpuscle_observe::{Chart, Check, Schedule};
 use corpuscle_scene::{Body, Camera, Colour, Colouring, Line, Scene};
 
-use crate::{Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation};
+use crate::{Action, Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation};
 use row::Row;
 
 /// The registry's entry.
@@ -103,9 +103,11 @@ struct Cradle {
     duration: f64,
     schedule: Schedule,
     samples: Vec<Sample>,
+    /// A copy that a hand plays with, while the measured row swings on.
+    in_hand: Option<Row>,
 }
 
-resume!(Cradle { values: [schedule, samples], parts: [row], set_up: [lifted, gap, amplitude, duration] });
+resume!(Cradle { values: [schedule, samples], parts: [row], set_up: [lifted, gap, amplitude, duration, in_hand] });
 
 impl Cradle {
     fn new(settings: &Settings) -> Result<Self, Invalid> {
@@ -130,6 +132,7 @@ impl Cradle {
             duration: settings.real("duration"),
             schedule: Schedule::new(1.0 / RESOLUTION).after_start(),
             samples: vec![],
+            in_hand: None,
         };
         cradle.take_sample();
         Ok(cradle)
@@ -142,6 +145,11 @@ impl Cradle {
             energy: self.row.energy(),
             centre: self.row.centre_energy(),
         });
+    }
+
+    /// The row that is drawn.
+    fn on_show(&self) -> &Row {
+        self.in_hand.as_ref().unwrap_or(&self.row)
     }
 
     fn equal(&self) -> bool {
@@ -208,14 +216,16 @@ impl Simulation for Cradle {
             self.row.advance(time)?;
             self.take_sample();
         }
-        self.row.advance(to)
+        self.row.advance(to)?;
+        self.in_hand.as_mut().map_or(Ok(()), |row| row.advance(to))
     }
 
     fn draw(&self, scene: &mut Scene) {
         scene.clear();
-        let places = self.row.places();
-        let speeds = self.row.velocities();
-        let masses = self.row.masses();
+        let row = self.on_show();
+        let places = row.places();
+        let speeds = row.velocities();
+        let masses = row.masses();
         let most = self.amplitude * std::f64::consts::TAU;
         let largest = masses.iter().copied().fold(0.0, f64::max);
         scene.time = self.row.time();
@@ -234,8 +244,7 @@ impl Simulation for Cradle {
         scene.camera = Camera::fit([-reach, -STRING - 1.0, 0.0], [last + reach, 0.5, 0.0]);
         scene.colouring = Colouring::Value { name: "speed".into(), unit: String::new(), least: 0.0, most };
         scene.title = EXPERIMENT.title.into();
-        scene.caption =
-            format!("{} contacts   energy {:.1} %", self.row.contacts(), 100.0 * self.row.energy() / self.samples[0].energy);
+        scene.caption = format!("{} contacts   energy {:.1} %", row.contacts(), 100.0 * row.energy() / self.samples[0].energy);
     }
 
     fn frame(&self) -> Option<Frame> {
@@ -321,6 +330,24 @@ impl Simulation for Cradle {
     }
 
     fn next_event(&self) -> Option<f64> {
-        self.row.next_contact().filter(|&time| time <= 1.5 * self.duration)
+        self.on_show().next_contact().filter(|&time| time <= 1.5 * self.duration)
+    }
+
+    fn refusal(&self, action: Action) -> Option<&'static str> {
+        let known = matches!(action, Action::Reverse | Action::Place { .. } | Action::Throw { .. });
+        (!known).then_some("a gas in a box: these balls hang in a row")
+    }
+
+    /// A ball goes as far as its neighbours let it, and keeps to its line.
+    fn act(&mut self, action: Action) -> Result<(), Invalid> {
+        action.allowed(self)?;
+        let mut row = self.on_show().clone();
+        match action {
+            Action::Place { body, at } => row.place(body, at[0] - body as f64 * (1.0 + self.gap))?,
+            Action::Throw { body, velocity } => row.throw(body, velocity[0])?,
+            _ => row.reverse(),
+        }
+        self.in_hand = Some(row);
+        Ok(())
     }
 }

@@ -19,9 +19,10 @@ use corpuscle_observe::chart::{Axis, Scale, Series, Style};
 use corpuscle_observe::{Chart, Check, Estimate, theory};
 use corpuscle_scene::{Camera, Colouring, Scene};
 
+use crate::hand::{self, InHand};
 use crate::replicas::{Replicas, energy_check, honesty};
 use crate::tally::Tally;
-use crate::{Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, peek};
+use crate::{Action, Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, peek};
 use tube::{BINS, Set, Tube};
 
 /// The registry's entry.
@@ -87,9 +88,10 @@ struct Sound {
     set: Set,
     duration: f64,
     tubes: Replicas<Tube>,
+    in_hand: Option<InHand<2>>,
 }
 
-resume!(Sound { values: [], parts: [tubes], set_up: [set, duration] });
+resume!(Sound { values: [], parts: [tubes], set_up: [set, duration, in_hand] });
 
 /// `c_T^2` and `nu` by least squares, from `J`, `R` and `H` at equal intervals.
 fn regression([current, density, heat]: &[Vec<f64>; 3], compressibility: f64, k: f64, interval: f64) -> [f64; 2] {
@@ -114,7 +116,7 @@ impl Sound {
         let members = ensemble::build(&streams, |&stream| Tube::new(&set, stream))?;
         let passage = set.length() / set.speed;
         let duration = settings.real("duration") * passage;
-        Ok(Self { duration, tubes: Replicas::new(passage / RESOLUTION, members), set })
+        Ok(Self { duration, tubes: Replicas::new(passage / RESOLUTION, members), set, in_hand: None })
     }
 
     /// The speed of sound, `sqrt(c_T^2 + kT Z^2)`, from the tubes but one, or all.
@@ -225,7 +227,8 @@ impl Simulation for Sound {
     }
 
     fn advance(&mut self, to: f64) -> Result<(), Failure> {
-        self.tubes.advance(to)
+        self.tubes.advance(to)?;
+        InHand::advance_any(&mut self.in_hand, self.tubes.members[0].started() + to)
     }
 
     fn draw(&self, scene: &mut Scene) {
@@ -233,8 +236,9 @@ impl Simulation for Sound {
         let tube = &self.tubes.members[0];
         let thermal = self.set.temperature().sqrt();
         // Coloured by the velocity along the tube, averaged over neighbours: of single particles one sees only heat.
-        let drift = tube.drift();
-        drawing::add_event_driven(scene, tube.engine(), &Tally::default(), tube.started(), |i| drift[i] / thermal);
+        let engine = InHand::on_show(self.in_hand.as_ref(), tube.engine());
+        let drift = tube::drift(engine);
+        drawing::add_event_driven(scene, engine, &Tally::default(), tube.started(), |i| drift[i] / thermal);
         scene.camera = Camera::fit(tube.engine().boundary().lower.to_three(), tube.engine().boundary().upper.to_three());
         scene.colouring =
             Colouring::Value { name: "velocity to the right".into(), unit: "√(kT/m)".into(), least: -0.4, most: 0.4 };
@@ -290,7 +294,16 @@ impl Simulation for Sound {
 
     fn next_event(&self) -> Option<f64> {
         let tube = &self.tubes.members[0];
-        peek::next_contact(tube.engine(), 1.5 * self.duration).map(|time| time - tube.started())
+        peek::next_contact(InHand::on_show(self.in_hand.as_ref(), tube.engine()), 1.5 * self.duration)
+            .map(|time| time - tube.started())
+    }
+
+    fn refusal(&self, action: Action) -> Option<&'static str> {
+        hand::wanting_of_number(self.tubes.members[0].engine(), action)
+    }
+
+    fn act(&mut self, action: Action) -> Result<(), Invalid> {
+        InHand::act(&mut self.in_hand, self.tubes.members[0].engine(), &Tally::default(), action)
     }
 }
 

@@ -359,10 +359,12 @@ impl Simulation for ThreeBody {
             vec![0.0, 0.15 * end, 0.5 * end]
         }
     }
+    fn refusal(&self, action: Action) -> Option<&'static str> {
+        hand::wanting_of_soft_number(action)
+    }
+
     fn act(&mut self, action: Action) -> Result<(), Invalid> {
-        if matches!(action, Action::Add { .. } | Action::Remove { .. }) {
-            return action.refused("a system of a scenario file: this experiment knows each of its bodies");
-        }
+        action.allowed(self)?;
         let mut copy = match self.in_hand.take() {
             Some(copy) => copy,
             None => self.copy()?,

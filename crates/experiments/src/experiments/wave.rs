@@ -9,6 +9,7 @@ mod beads;
 mod chain;
 mod charts;
 mod friction;
+mod held;
 mod initial;
 mod membrane;
 mod nonlinear;
@@ -32,6 +33,7 @@ use corpuscle_time::{Integrator, Signal};
 use crate::{Action, Experiment, Frame, Honesty, Settings, Simulation, Table, ensemble};
 use chain::{Chain, Design, End, Ends, Polarisation};
 use friction::Braked;
+use held::Held;
 use membrane::Membrane;
 use nonlinear::Nonlinear;
 use spectra::Spectra;
@@ -101,22 +103,17 @@ struct Wave {
     /// Largest deviation from the superposition of normal modes, where that is known.
     deviation: Option<f64>,
     reversed: bool,
+    /// A copy that a hand plays with, while the measured chain goes on.
+    in_hand: Option<Held>,
 }
 
 fn start(settings: &Settings) -> Result<Box<dyn Simulation>, Invalid> {
-    let mut settings = settings.clone();
-    let name = settings.word("preset").to_owned();
-    for (key, text) in parameters::preset(&name) {
-        if !settings.is_given(key) {
-            settings.set_text(key, text)?;
-        }
-    }
-    Ok(match name.as_str() {
-        "fermi-pasta" | "solitons" => Box::new(Nonlinear::new(&settings)?),
-        "dispersion" => Box::new(Spectra::new(&settings)?),
-        "matched-end" | "damped-mode" | "resonance" => Box::new(Braked::new(&settings)?),
-        "two-sources" | "double-slit" | "single-slit" | "doppler" => Box::new(Membrane::new(&settings)?),
-        _ => Box::new(Wave::new(&settings)?),
+    Ok(match settings.word("preset") {
+        "fermi-pasta" | "solitons" => Box::new(Nonlinear::new(settings)?),
+        "dispersion" => Box::new(Spectra::new(settings)?),
+        "matched-end" | "damped-mode" | "resonance" => Box::new(Braked::new(settings)?),
+        "two-sources" | "double-slit" | "single-slit" | "doppler" => Box::new(Membrane::new(settings)?),
+        _ => Box::new(Wave::new(settings)?),
     })
 }
 
@@ -133,7 +130,10 @@ impl Wave {
         let start = match settings.word("start") {
             "pulse" => Start::Pulse { width: settings.real("pulse_width") * spacing },
             "mode" => Start::Mode(settings.whole("mode")),
-            _ => Start::Drive { angular_frequency: TAU * settings.real("drive_frequency") },
+            _ if settings.real("drive_frequency") > 0.0 => {
+                Start::Drive { angular_frequency: TAU * settings.real("drive_frequency") }
+            }
+            _ => return Err(settings.invalid("drive_frequency", "a number above 0: this chain has no mode to shake in")),
         };
         let signal = match start {
             Start::Drive { angular_frequency } => {
@@ -195,6 +195,7 @@ impl Wave {
             largest: 0.0,
             deviation: None,
             reversed: false,
+            in_hand: None,
         };
         wave.sample_until(0.0)?;
         Ok(wave)
@@ -291,7 +292,7 @@ impl Wave {
 resume!(Wave {
     values: [schedule, time, samples, kept, largest, deviation, reversed],
     parts: [chain, trials],
-    set_up: [material, ratio, start, amplitude, step, dalembert, initial, end],
+    set_up: [material, ratio, start, amplitude, step, dalembert, initial, end, in_hand],
     then: forget_when_reversed,
 });
 
@@ -317,6 +318,7 @@ impl Simulation for Wave {
         ensemble::for_each(&mut self.trials, |trial| trial.advance(share))?;
         self.record_until(to)?;
         self.chain.advance(to)?;
+        self.in_hand.as_mut().map_or(Ok(()), |held| held.advance(to))?;
         self.time = self.time.max(to);
         Ok(())
     }
@@ -360,15 +362,23 @@ impl Simulation for Wave {
         (0..5).map(|k| 0.2 * f64::from(k) * self.end).collect()
     }
 
-    fn act(&mut self, action: Action) -> Result<(), Invalid> {
-        if action != Action::Reverse {
-            return action.refused("free particles: the masses of this chain are held by their springs");
+    fn refusal(&self, action: Action) -> Option<&'static str> {
+        match action {
+            Action::Reverse | Action::Place { .. } | Action::Throw { .. } if !matches!(self.start, Start::Drive { .. }) => None,
+            Action::Reverse | Action::Place { .. } | Action::Throw { .. } => Some("a chain without a shaker, which would go on"),
+            _ => Some("free particles: the masses of this chain are held by their springs"),
         }
-        if matches!(self.start, Start::Drive { .. }) {
-            return action.refused("a chain without a shaker, which would go on forwards");
+    }
+
+    /// The reversal is of the measured chain, as long as no hand has touched it otherwise.
+    fn act(&mut self, action: Action) -> Result<(), Invalid> {
+        action.allowed(self)?;
+        if action != Action::Reverse {
+            return self.touch(action);
         }
         self.reversed = true;
         self.dalembert = None;
-        self.chain.reverse()
+        self.chain.reverse()?;
+        self.in_hand.as_mut().map_or(Ok(()), |held| held.chain.reverse())
     }
 }

@@ -12,8 +12,9 @@ use super::picture::Trail;
 use super::sample::Sample;
 use super::spec::{Observable, System};
 use super::verdict::Conserved;
+use crate::probe::{self, Region};
 use crate::tally::Tally;
-use crate::{Action, Frame, Honesty, Simulation, Table, hand, peek};
+use crate::{Action, Frame, Honesty, Probed, Simulation, Table, hand, peek};
 
 /// Samples taken when the file does not say how often.
 const SAMPLES: f64 = 500.0;
@@ -163,7 +164,7 @@ impl<const D: usize> Free<D> {
             self.trails.iter_mut().filter(|(i, _)| *i > body).for_each(|(i, _)| *i -= 1);
         }
         if particles.len() != self.start_particles.len() {
-            self.tally = Tally::of(particles.len());
+            self.tally.begin_again(particles.len());
             self.degrees_of_freedom = degrees_of_freedom(&particles, self.held, self.closed);
         }
         self.closed &= self.engine.boundary().conserves_momentum();
@@ -347,12 +348,33 @@ impl<const D: usize> Simulation for Free<D> {
         }
     }
 
+    fn probe(&mut self, corners: Option<[[f64; 2]; 2]>) {
+        if let AnyEngine::Event(engine) = &self.engine {
+            self.tally.lay(corners.and_then(|corners| Region::lay(engine, corners)));
+        }
+    }
+
+    fn probed(&self) -> Option<Probed> {
+        match &self.engine {
+            AnyEngine::Event(engine) => probe::read(engine, &self.tally),
+            AnyEngine::Time(_) => None,
+        }
+    }
+
+    fn refusal(&self, action: Action) -> Option<&'static str> {
+        match &self.engine {
+            AnyEngine::Event(engine) => hand::wanting_of_hard(engine, action),
+            AnyEngine::Time(_) if matches!(action, Action::Remove { .. }) && !self.bonds.is_empty() => {
+                Some("particles without bonds, which would hang on nothing")
+            }
+            AnyEngine::Time(_) => hand::wanting_of_soft(action),
+        }
+    }
+
     fn act(&mut self, action: Action) -> Result<(), Invalid> {
+        action.allowed(self)?;
         match &mut self.engine {
             AnyEngine::Event(engine) => hand::on_hard(engine, action)?,
-            AnyEngine::Time(_) if matches!(action, Action::Remove { .. }) && !self.bonds.is_empty() => {
-                return action.refused("particles without bonds, which would hang on nothing");
-            }
             AnyEngine::Time(engine) => hand::on_soft(engine, action)?,
         }
         self.begin_again(action);

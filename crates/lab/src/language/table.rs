@@ -115,7 +115,8 @@ table! {
     GroupSystem: "System", "系统";
     GroupMeasurement: "Measurement", "测量";
     RestartNote: "A changed value starts the run again.", "修改数值会重新开始运行。";
-    ResetTo: "Back to the default, {}", "恢复默认值 {}";
+    ResetTo: "Back to what it is by itself, {}", "恢复默认值 {}";
+    NotUsed: "Without influence where {} is: {}", "当 {} 为“{}”时不起作用";
     Expected: "expected {}", "应为 {}";
     Range: "From {} to {}.", "从 {} 到 {}。";
     ListRange: "At most {} numbers from {} to {}.", "最多 {} 个数，从 {} 到 {}。";
@@ -189,6 +190,9 @@ table! {
     Deeds: "Done by hand", "手动操作";
     DeedsHelp: "Going back before one of these undoes it; going on repeats it, bit for bit. What is measured counts only what no hand has touched.",
         "回到操作之前即撤销；再向前则逐位重复。测量只计未被触碰的系统。";
+    DeedsOfFile: "Done by the file", "由文件执行";
+    DeedsOfFileHelp: "These stand in the scenario file as [[deed]]; the run does them when their time comes.",
+        "它们作为 [[deed]] 写在场景文件中；运行到该时刻时执行。";
     DidReverse: "reversed", "反转";
     DidDisturb: "disturbed, ε = {}", "扰动，ε = {}";
     DidPlace: "carried body {}", "搬动粒子 {}";
@@ -206,6 +210,9 @@ table! {
     Density: "density", "密度";
     Flow: "flow u", "流速 u";
     KineticPressure: "P, kinetic", "P（动理部分）";
+    CollisionPressure: "P, of collisions", "P（碰撞部分）";
+    WholePressure: "P", "P";
+    ProbedFor: "{} collisions in t = {}", "{} 次碰撞，历时 t = {}";
     BackToChecks: "Back to the checks", "返回检验";
     ShowChart: "Show its chart", "显示其图表";
     ChiSquared: "χ² = {} in {} bins", "χ² = {}，{} 格";

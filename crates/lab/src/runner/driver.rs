@@ -44,6 +44,8 @@ pub enum Order {
     Arrows(bool),
     /// Compute the same another way beside it: how that is called, and its scenario; or no longer.
     Beside(Option<(String, Box<Scenario>)>),
+    /// Watch what passes between two corners of a flat picture, or no longer.
+    Probe(Option<[[f64; 2]; 2]>),
     /// Go to a physical time, back or forth, as fast as the engine can.
     GoTo(f64),
 }
@@ -62,6 +64,8 @@ pub(crate) struct Driver {
     stride: f64,
     /// How the viewer looks at it.
     sight: Sight,
+    /// Corners of what the viewer probes.
+    probe: Option<[[f64; 2]; 2]>,
     /// The same computed another way.
     beside: Option<Beside>,
     seen: Snapshot,
@@ -79,6 +83,7 @@ impl Driver {
             factor: 1.0,
             stride: 0.0,
             sight: Sight::default(),
+            probe: None,
             beside: None,
             seen: Snapshot { pace: 1.0, ..Snapshot::default() },
         };
@@ -112,6 +117,9 @@ impl Driver {
         self.seen.speed = self.seen.usual_speed() * self.factor;
         self.stride = (self.seen.end - start) / STRIDES;
         self.seen.travel = None;
+        self.simulation.probe(self.probe);
+        let refused = |action: &Action| Some((action.name(), self.simulation.refusal(*action)?));
+        self.seen.refusals = Arc::new(Action::EXAMPLES.iter().filter_map(refused).collect());
         self.measure();
     }
 
@@ -242,6 +250,10 @@ impl Driver {
             Order::Paint(paint) => self.sights().for_each(|sight| sight.set_paint(paint)),
             Order::Arrows(on) => self.sights().for_each(|sight| sight.set_arrows(on)),
             Order::Beside(rival) => self.set_beside(rival),
+            Order::Probe(corners) => {
+                self.probe = corners;
+                self.simulation.probe(corners);
+            }
             Order::GoTo(time) => self.go_to(time),
         }
     }
@@ -356,6 +368,7 @@ impl Driver {
         self.seen.look += 1;
         self.sight.look(self.simulation.as_ref(), &mut self.seen.scene);
         self.seen.beside = self.beside.as_mut().map(Beside::look);
+        self.seen.probed = self.simulation.probed();
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use corpuscle_experiments::{Action, Honesty, Simulation, Table};
+use corpuscle_experiments::{Action, Honesty, Probed, Simulation, Table};
 use corpuscle_observe::{Chart, Check};
 use corpuscle_scene::Scene;
 
@@ -35,6 +35,10 @@ pub struct Snapshot {
     pub beside: Option<Side>,
     /// What has been done to the system by hand, and when.
     pub deeds: Arc<Vec<(f64, Action)>>,
+    /// What the probe has seen of contacts, where they can be watched.
+    pub probed: Option<Probed>,
+    /// What kinds of action this experiment refuses, by their names, and what each would need.
+    pub refusals: Arc<Vec<(&'static str, &'static str)>>,
     /// Charts, checks and honesty, made now and then.
     pub measured: Arc<Measured>,
     /// What went wrong since the last order, in the program's words.
@@ -94,6 +98,11 @@ pub enum Fault {
 }
 
 impl Snapshot {
+    /// What an action of this kind would need that is not here; none where it can be tried.
+    pub fn refusal(&self, action: Action) -> Option<&'static str> {
+        self.refusals.iter().find(|(name, _)| *name == action.name()).map(|&(_, needs)| needs)
+    }
+
     /// Physical time a second of the viewer, unless told otherwise.
     pub(crate) fn usual_speed(&self) -> f64 {
         (self.end - self.start) / SECONDS
@@ -120,6 +129,8 @@ impl Snapshot {
             travel: self.travel,
             beside: self.beside.clone(),
             deeds: self.deeds.clone(),
+            probed: self.probed,
+            refusals: self.refusals.clone(),
             measured: self.measured.clone(),
             fault: self.fault.clone(),
         }

@@ -138,18 +138,27 @@ pub(super) fn described(language: Language, action: Action) -> String {
     language.fill(text, &part.iter().map(String::as_str).collect::<Vec<_>>())
 }
 
-/// Marks of what was done on the line of time: small triangles, whose words the pointer reads.
+/// All that is done to the system in this run: by the file, and by hand.
+pub(super) fn all(model: &Model, seen: &Snapshot) -> impl Iterator<Item = (f64, Action, Text)> {
+    let of_file = model.scenario.deeds.iter().map(|deed| (deed.at, deed.act, Text::DeedsOfFile));
+    let by_hand = seen.deeds.iter().map(|&(time, action)| (time, action, Text::Deeds));
+    of_file.chain(by_hand)
+}
+
+/// Marks of what is done on the line of time: small triangles, hollow for the file's, whose words the pointer reads.
 pub(super) fn marks(ui: &Ui, model: &Model, seen: &Snapshot, line: Rect, x_of: impl Fn(f64) -> f32) -> Option<String> {
     let colours = model.preferences.theme.colours();
     let pointer = ui.input(|input| input.pointer.hover_pos());
     let mut read = None;
-    for &(time, action) in seen.deeds.iter() {
+    for (time, action, by) in all(model, seen) {
         let x = x_of(time);
         let top = egui::pos2(x, line.top() - 3.0);
         let points = vec![top, top + vec2(-4.0, -6.0), top + vec2(4.0, -6.0)];
-        ui.painter().add(egui::Shape::convex_polygon(points, colours.bad, Stroke::NONE));
+        let fill = if by == Text::Deeds { colours.bad } else { egui::Color32::TRANSPARENT };
+        ui.painter().add(egui::Shape::convex_polygon(points, fill, Stroke::new(1.2, colours.bad)));
         if pointer.is_some_and(|at| (at.x - x).abs() < 5.0 && (at.y - line.top()).abs() < 16.0) {
-            read = Some(format!("t = {}: {}", significant(time, 5), described(model.language(), action)));
+            let words = described(model.language(), action);
+            read = Some(format!("{}: t = {}: {words}", model.text(by), significant(time, 5)));
         }
     }
     read

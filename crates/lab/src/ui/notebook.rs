@@ -3,7 +3,7 @@
 use corpuscle_io::csv;
 use egui::{ComboBox, Grid, RichText, ScrollArea, Ui};
 
-use super::hands::described;
+use super::hands::{all, described};
 use super::icons::Icon;
 use super::widgets::{quiet, section, sized_icon_button};
 use crate::command::Command;
@@ -39,17 +39,22 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
     deeds(ui, model, seen);
 }
 
-/// What was done by hand in this run, and when.
+/// What is done to the system in this run, and when: by the file, of which some may be ahead, and by hand.
 fn deeds(ui: &mut Ui, model: &Model, seen: &Snapshot) {
-    if seen.deeds.is_empty() {
-        return;
-    }
     let colours = model.preferences.theme.colours();
-    section(ui, &colours, model.text(Text::Deeds));
-    for &(time, action) in seen.deeds.iter() {
-        ui.label(format!("t = {}: {}", significant(time, 6), described(model.language(), action)));
+    for (heading, help) in [(Text::DeedsOfFile, Text::DeedsOfFileHelp), (Text::Deeds, Text::DeedsHelp)] {
+        let mut list = all(model, seen).filter(|&(.., by)| by == heading).peekable();
+        if list.peek().is_none() {
+            continue;
+        }
+        section(ui, &colours, model.text(heading));
+        for (time, action, _) in list {
+            let ink = if time > seen.time { colours.quiet } else { colours.ink };
+            let words = format!("t = {}: {}", significant(time, 6), described(model.language(), action));
+            ui.label(RichText::new(words).color(ink));
+        }
+        quiet(ui, &colours, model.text(help));
     }
-    quiet(ui, &colours, model.text(Text::DeedsHelp));
 }
 
 /// Which quantities the columns hold.

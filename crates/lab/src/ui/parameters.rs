@@ -6,7 +6,7 @@ use egui::{Align, ComboBox, DragValue, Layout, RichText, ScrollArea, Slider, Sli
 
 use super::icons::Icon;
 use super::widgets::{quiet, section, sized_icon_button};
-use crate::language::Text;
+use crate::language::{Language, Text};
 use crate::model::Model;
 use crate::number::significant;
 use crate::presets;
@@ -144,10 +144,16 @@ fn one(ui: &mut Ui, model: &mut Model, seen: &Snapshot, parameter: &'static Para
         _ => None,
     };
     let help = format!("{}\n{}", language.phrase(parameter.help), range(model, parameter));
+    let idle = model.scenario.settings.idle_under(parameter.name).map(|by| idle(model, by));
     let mut chosen = None;
+    let top = ui.cursor().min;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        let ink = if refused.is_some() { colours.bad } else { colours.ink };
+        let ink = match (&refused, &idle) {
+            (Some(_), _) => colours.bad,
+            (None, Some(_)) => colours.quiet,
+            (None, None) => colours.ink,
+        };
         let label = ui.label(RichText::new(&name).color(ink)).on_hover_text(&help);
         if !parameter.unit.is_empty() {
             ui.label(RichText::new(language.phrase(parameter.unit)).color(colours.quiet).small());
@@ -158,18 +164,35 @@ fn one(ui: &mut Ui, model: &mut Model, seen: &Snapshot, parameter: &'static Para
                 if !given {
                     ui.set_invisible();
                 }
-                let tip = language.fill(Text::ResetTo, &[&shown(&parameter.default())]);
+                let fallback = model.scenario.settings.fallback(parameter.name).unwrap_or_else(|_| parameter.default());
+                let tip = language.fill(Text::ResetTo, &[&shown(language, &fallback)]);
                 if sized_icon_button(ui, Icon::Undo, &tip, "", false, vec2(20.0, 20.0)).clicked() {
                     chosen = Some(None);
                 }
             });
-            if let Some(value) = field(ui, model, parameter, &value, label.id, &help) {
-                chosen = Some(Some(value));
-            }
+            ui.scope(|ui| {
+                if idle.is_some() {
+                    ui.disable();
+                }
+                if let Some(value) = field(ui, model, parameter, &value, label.id, &help) {
+                    chosen = Some(Some(value));
+                }
+            });
         });
     });
-    if let Some(value) = slider(ui, model, parameter, &value, &name) {
-        chosen = Some(Some(value));
+    ui.scope(|ui| {
+        if idle.is_some() {
+            ui.disable();
+        }
+        if let Some(value) = slider(ui, model, parameter, &value, &name) {
+            chosen = Some(Some(value));
+        }
+    });
+    if let Some(words) = idle {
+        let rect = egui::Rect::from_min_max(top, egui::pos2(ui.max_rect().right(), ui.cursor().top()));
+        let whole = ui.interact(rect, ui.scope_id().with(("idle", parameter.name)), egui::Sense::hover());
+        whole.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, false, format!("{name}: {words}")));
+        whole.on_hover_text(format!("{words}\n{help}"));
     }
     if let Some(expected) = refused {
         ui.add(egui::Label::new(RichText::new(language.fill(Text::Expected, &[&expected])).color(colours.bad).small()).wrap());
@@ -180,13 +203,22 @@ fn one(ui: &mut Ui, model: &mut Model, seen: &Snapshot, parameter: &'static Para
     }
 }
 
+/// Why a parameter is not used, in words.
+fn idle(model: &Model, by: &Parameter) -> String {
+    let language = model.language();
+    let name = language.parameter(model.scenario.name(), by.name);
+    language.fill(Text::NotUsed, &[&name, &language.choice(model.scenario.settings.word(by.name))])
+}
+
 /// What is accepted, in words.
 fn range(model: &Model, parameter: &Parameter) -> String {
     let language = model.language();
     match parameter.kind {
         Kind::Real { least, most, .. } => language.fill(Text::Range, &[&significant(least, 4), &significant(most, 4)]),
         Kind::Whole { least, most, .. } => language.fill(Text::Range, &[&least.to_string(), &most.to_string()]),
-        Kind::Choice { options, .. } => options.iter().map(|word| language.choice(word)).collect::<Vec<_>>().join(" · "),
+        Kind::Choice { .. } | Kind::Situation { .. } => {
+            parameter.words().iter().map(|word| language.choice(word)).collect::<Vec<_>>().join(" · ")
+        }
         Kind::Flag { .. } => String::new(),
         Kind::List { least, most, longest, .. } => {
             language.fill(Text::ListRange, &[&longest.to_string(), &significant(least, 4), &significant(most, 4)])
@@ -194,8 +226,9 @@ fn range(model: &Model, parameter: &Parameter) -> String {
     }
 }
 
-fn shown(value: &Value) -> String {
+fn shown(language: Language, value: &Value) -> String {
     match value {
+        Value::Word(word) => language.choice(word),
         Value::Real(x) => significant(*x, 6),
         Value::List(list) if list.is_empty() => "[ ]".into(),
         value => value.to_string(),
@@ -226,12 +259,12 @@ fn field(ui: &mut Ui, model: &mut Model, parameter: &Parameter, value: &Value, l
             let response = ui.add(field).labelled_by(label).on_hover_text(help);
             settled(model, &response, parameter, changed as f64, changed != n).map(|n| Value::Whole(n as u64))
         }
-        (Kind::Choice { options, .. }, Value::Word(word)) => {
+        (Kind::Choice { .. } | Kind::Situation { .. }, Value::Word(word)) => {
             let mut changed = word.clone();
             let combo = ComboBox::from_id_salt(parameter.name).width(118.0).selected_text(language.choice(word));
             let response = combo.show_ui(ui, |ui| {
-                for option in options {
-                    ui.selectable_value(&mut changed, (*option).to_owned(), language.choice(option));
+                for option in parameter.words() {
+                    ui.selectable_value(&mut changed, option.to_owned(), language.choice(option));
                 }
             });
             response.response.labelled_by(label).on_hover_text(help);

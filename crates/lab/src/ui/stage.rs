@@ -136,7 +136,9 @@ fn pointer(ui: &Ui, model: &mut Model, seen: &Snapshot, response: &Response, pro
         let from = projection.place(inside(stage, press));
         match model.tool {
             Tool::Ruler => model.ruler = Some([from, place]),
-            Tool::Probe if !projection.is_spatial() => model.probe = Some([[from[0], from[1]], [place[0], place[1]]]),
+            Tool::Probe if !projection.is_spatial() => {
+                model.set_probe(Some([[from[0], from[1]], [place[0], place[1]]]));
+            }
             _ => {}
         }
     }
@@ -146,7 +148,7 @@ fn pointer(ui: &Ui, model: &mut Model, seen: &Snapshot, response: &Response, pro
         match model.tool {
             Tool::Hand => model.followed = pick(&seen.scene, projection, inside(stage, at), REACH),
             Tool::Ruler => model.ruler = None,
-            Tool::Probe => model.probe = None,
+            Tool::Probe => model.set_probe(None),
             _ => {}
         }
     }
@@ -238,9 +240,7 @@ fn probe_reading(painter: &Painter, model: &Model, seen: &Snapshot, projection: 
         vec![format!("N = {}", reading.bodies), format!("{} n = {}", model.text(Text::Density), significant(reading.density, 4))];
     if let Some((mean, error)) = reading.temperature {
         lines.push(format!("k_B T/m = {}", with_error(mean, Some(error))));
-        if let Some((mean, error)) = reading.pressure {
-            lines.push(format!("{} = {}", model.text(Text::KineticPressure), with_error(mean, Some(error))));
-        }
+        lines.extend(pressures(model, seen, reading.pressure));
         lines.push(format!(
             "{} = ({}, {})",
             model.text(Text::Flow),
@@ -255,6 +255,20 @@ fn probe_reading(painter: &Painter, model: &Model, seen: &Snapshot, projection: 
         (rect.left_top() - vec2(8.0, 0.0), Align2::RIGHT_TOP)
     };
     card(painter, model, at, align, &lines.join("\n"));
+}
+
+/// The parts of the pressure: those that contacts tell where they can be watched, or else that of particles without interaction.
+fn pressures(model: &Model, seen: &Snapshot, kinetic: Option<(f64, f64)>) -> Vec<String> {
+    let shown = |text: Text, (mean, error): (f64, f64)| format!("{} = {}", model.text(text), with_error(mean, Some(error)));
+    let Some(probed) = seen.probed else { return kinetic.map(|part| shown(Text::KineticPressure, part)).into_iter().collect() };
+    let parts = [(Text::KineticPressure, probed.kinetic), (Text::CollisionPressure, probed.collisional)];
+    let mut lines: Vec<String> = parts.into_iter().filter_map(|(text, part)| Some(shown(text, part?))).collect();
+    if let (Some((kinetic, error)), Some((collisional, other))) = (probed.kinetic, probed.collisional) {
+        lines.push(shown(Text::WholePressure, (kinetic + collisional, error.hypot(other))));
+        let counts = [probed.contacts.to_string(), significant(probed.time, 3)];
+        lines.push(model.language().fill(Text::ProbedFor, &[&counts[0], &counts[1]]));
+    }
+    lines
 }
 
 /// Words on a ground of their own, so that they can be read over anything.

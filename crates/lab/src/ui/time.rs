@@ -1,9 +1,11 @@
 //! The bar below: time, its speed, and the line of remembered moments.
 
+use corpuscle_experiments::Action;
 use egui::{Align, Align2, DragValue, FontId, Layout, Rect, RichText, Sense, Slider, Stroke, Ui, pos2, vec2};
 
 use super::hands;
 use super::icons::Icon;
+use super::toolbar::refused;
 use super::widgets::{command_button, icon_button, sized_icon_button};
 use crate::command::Command;
 use crate::language::Text;
@@ -20,7 +22,8 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
         for (icon, command, text) in
             [(Icon::Restart, Command::Restart, Text::DoRestart), (Icon::Reverse, Command::Reverse, Text::DoReverse)]
         {
-            if command_button(ui, model, icon, command, text) {
+            let needs = if command == Command::Reverse { seen.refusal(Action::Reverse) } else { None };
+            if refusable(ui, model, icon, command, text, needs) {
                 model.obey(command, seen);
             }
         }
@@ -53,12 +56,23 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
     });
 }
 
+/// A button that is grey and says why where the experiment refuses what it does.
+fn refusable(ui: &mut Ui, model: &Model, icon: Icon, command: Command, text: Text, needs: Option<&str>) -> bool {
+    let words = needs.map(|needs| refused(model, model.text(text), needs));
+    let button = ui.add_enabled_ui(words.is_none(), |ui| {
+        let button = icon_button(ui, icon, model.text(text), command.key(), false);
+        button.on_disabled_hover_text(words.as_deref().unwrap_or_default())
+    });
+    button.inner.clicked()
+}
+
 /// Loschmidt's question, and how strongly it is asked.
 fn disturb(ui: &mut Ui, model: &mut Model, seen: &Snapshot) {
-    if command_button(ui, model, Icon::Fork, Command::Disturb, Text::DoDisturb) {
+    let strength = model.tools.disturbance;
+    let needs = seen.refusal(Action::Disturb { strength, seed: 0 });
+    if refusable(ui, model, Icon::Fork, Command::Disturb, Text::DoDisturb, needs) {
         model.obey(Command::Disturb, seen);
     }
-    let strength = model.tools.disturbance;
     let field = DragValue::new(&mut model.tools.disturbance)
         .range(1e-15..=1.0)
         .speed(0.02 * strength)
@@ -101,7 +115,7 @@ fn said(ui: &mut Ui, model: &Model, seen: &Snapshot) {
             Fault::Refused { key, expected } => language.fill(Text::Refused, &[&language.key(key), expected]),
             Fault::Failed(words) => language.fill(Text::Failed, &[words]),
             Fault::NoCollisions => language.text(Text::NoCollisions).to_owned(),
-            Fault::Unable(expected) => language.fill(Text::Unable, &[expected]),
+            Fault::Unable(expected) => language.fill(Text::Unable, &[&language.phrase(expected)]),
         };
         (words, colours.bad)
     } else if let Some(notice) = &model.notice {

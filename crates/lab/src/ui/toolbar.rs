@@ -26,7 +26,16 @@ const GROUPS: [&[(Tool, Icon)]; 4] = [
     &[(Tool::Ruler, Icon::Ruler), (Tool::Probe, Icon::Probe)],
 ];
 
+/// Why something cannot be done in this experiment, under its name.
+pub(super) fn refused(model: &Model, name: &str, needs: &str) -> String {
+    let language = model.language();
+    format!("{name}\n{}", language.fill(Text::Unable, &[&language.phrase(needs)]))
+}
+
 pub(super) fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot, column: Rect) {
+    if model.tool.refusal(seen).is_some() {
+        (model.tool, model.touch) = (Tool::Hand, None);
+    }
     let rect = column.shrink2(vec2(4.0, 4.0));
     ui.scope_builder(UiBuilder::new().max_rect(rect).layout(egui::Layout::top_down(egui::Align::Center)), |ui| {
         ui.spacing_mut().item_spacing.y = GAPS[0];
@@ -34,7 +43,12 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, seen: &Snapshot, column: Rect
         for group in GROUPS {
             for &(tool, icon) in group {
                 let key = if tool == Tool::Hand { Command::NextTool.key() } else { "" };
-                if sized_icon_button(ui, icon, model.text(tool.text()), key, model.tool == tool, size).clicked() {
+                let needs = tool.refusal(seen).map(|needs| refused(model, model.text(tool.text()), needs));
+                let button = ui.add_enabled_ui(needs.is_none(), |ui| {
+                    let button = sized_icon_button(ui, icon, model.text(tool.text()), key, model.tool == tool, size);
+                    button.on_disabled_hover_text(needs.as_deref().unwrap_or_default())
+                });
+                if button.inner.clicked() {
                     model.tool = if model.tool == tool { Tool::Hand } else { tool };
                     model.touch = None;
                 }

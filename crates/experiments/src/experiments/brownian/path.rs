@@ -7,9 +7,10 @@ use corpuscle_scene::{Colour, Colouring, Scene, TrailPoint};
 
 use super::bath::{Bath, TRACER};
 use super::set::Set;
-use crate::hand::InHand;
+use crate::hand::{self, InHand};
 use crate::horizon::precision_horizon;
-use crate::{Action, Frame, Honesty, Settings, Simulation, drawing, ensemble, peek};
+use crate::probe::{self, Region};
+use crate::{Action, Frame, Honesty, Probed, Settings, Simulation, drawing, ensemble, peek};
 
 /// Samples per relaxation time: Simpson's rule on the velocity correlation is then good to `20^-4 / 180`.
 pub(super) const RESOLUTION: f64 = 20.0;
@@ -318,6 +319,22 @@ impl<const D: usize> Simulation for Brownian<D> {
         let bath = &self.baths[0];
         let engine = self.in_hand.as_ref().map_or(&bath.engine, |copy| &copy.engine);
         peek::next_contact(engine, 1.5 * self.duration).map(|time| time - bath.started())
+    }
+
+    fn probe(&mut self, corners: Option<[[f64; 2]; 2]>) {
+        let bath = &mut self.baths[0];
+        let (engine, tally) = self.in_hand.as_mut().map_or((&bath.engine, &mut bath.tally), |copy| (&copy.engine, &mut copy.tally));
+        tally.lay(corners.and_then(|corners| Region::lay(engine, corners)));
+    }
+
+    fn probed(&self) -> Option<Probed> {
+        let bath = &self.baths[0];
+        let (engine, tally) = self.in_hand.as_ref().map_or((&bath.engine, &bath.tally), |copy| (&copy.engine, &copy.tally));
+        probe::read(engine, tally)
+    }
+
+    fn refusal(&self, action: Action) -> Option<&'static str> {
+        hand::wanting_of_number(&self.baths[0].engine, action)
     }
 
     fn act(&mut self, action: Action) -> Result<(), Invalid> {

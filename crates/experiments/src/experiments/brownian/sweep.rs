@@ -11,7 +11,7 @@ use corpuscle_scene::Scene;
 
 use super::path::Brownian;
 use super::set::Set;
-use crate::{Action, Frame, Honesty, Settings, Simulation};
+use crate::{Action, Frame, Honesty, Probed, Settings, Simulation};
 
 /// Kinds of particles side by side; all are watched for as many relaxation times of their own, on the clock of the first.
 pub(super) struct Sweep<const D: usize> {
@@ -156,6 +156,18 @@ impl<const D: usize> Simulation for Sweep<D> {
 
     fn next_event(&self) -> Option<f64> {
         self.kinds[0].next_event()
+    }
+
+    fn probe(&mut self, corners: Option<[[f64; 2]; 2]>) {
+        self.kinds[0].probe(corners);
+    }
+
+    fn probed(&self) -> Option<Probed> {
+        self.kinds[0].probed()
+    }
+
+    fn refusal(&self, action: Action) -> Option<&'static str> {
+        self.kinds[0].refusal(action)
     }
 
     fn act(&mut self, action: Action) -> Result<(), Invalid> {

@@ -20,7 +20,7 @@ use super::room::{Process, Room, Sample};
 use crate::horizon::precision_horizon;
 use crate::replicas::{energy_check, honesty};
 use crate::tally::Tally;
-use crate::{Action, Frame, Honesty, Settings, Simulation, drawing, ensemble, hand, peek};
+use crate::{Action, Frame, Honesty, Probed, Settings, Simulation, drawing, ensemble, hand, peek, probe};
 
 /// Samples taken of each room in the whole duration.
 const SAMPLES: usize = 400;
@@ -339,6 +339,19 @@ impl<const D: usize> Simulation for Entropy<D> {
             }
             None => vec![0.0, 0.05 * self.duration, 0.2 * self.duration],
         }
+    }
+
+    fn probe(&mut self, corners: Option<[[f64; 2]; 2]>) {
+        let vessel = &mut self.shown.vessel;
+        vessel.tally.lay(corners.and_then(|corners| probe::Region::lay(&vessel.engine, corners)));
+    }
+
+    fn probed(&self) -> Option<Probed> {
+        probe::read(&self.shown.vessel.engine, &self.shown.vessel.tally)
+    }
+
+    fn refusal(&self, action: Action) -> Option<&'static str> {
+        hand::wanting_of_number(&self.shown.vessel.engine, action)
     }
 
     fn act(&mut self, action: Action) -> Result<(), Invalid> {

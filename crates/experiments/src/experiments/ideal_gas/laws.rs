@@ -13,11 +13,12 @@ use corpuscle_scene::{Colouring, Scene};
 use super::system::{Pace, State, System};
 use super::{charts, checks, theory};
 use crate::drawing::add_event_driven;
-use crate::hand::InHand;
+use crate::hand::{self, InHand};
 use crate::horizon::precision_horizon;
+use crate::probe::{self, Region};
 use crate::simulation::{Honesty, Simulation, Table};
 use crate::tally::Tally;
-use crate::{Action, Frame, Settings, ensemble, gas, peek};
+use crate::{Action, Frame, Probed, Settings, ensemble, gas, peek};
 
 /// Samples a crossing of the box, `a / sqrt(kT/m)`.
 const SAMPLES_PER_CROSSING: f64 = 20.0;
@@ -276,6 +277,23 @@ impl<const D: usize> Simulation for Laboratory<D> {
     fn moments(&self) -> Vec<f64> {
         vec![0.0, self.pace.warm_up as f64 * self.pace.interval]
     }
+    fn probe(&mut self, corners: Option<[[f64; 2]; 2]>) {
+        let measured = &mut self.base.replicas[0];
+        let (engine, tally) =
+            self.in_hand.as_mut().map_or((&measured.engine, &mut measured.tally), |copy| (&copy.engine, &mut copy.tally));
+        tally.lay(corners.and_then(|corners| Region::lay(engine, corners)));
+    }
+
+    fn probed(&self) -> Option<Probed> {
+        let measured = &self.base.replicas[0];
+        let (engine, tally) = self.in_hand.as_ref().map_or((&measured.engine, &measured.tally), |copy| (&copy.engine, &copy.tally));
+        probe::read(engine, tally)
+    }
+
+    fn refusal(&self, action: Action) -> Option<&'static str> {
+        hand::wanting_of_number(&self.base.replicas[0].engine, action)
+    }
+
     fn act(&mut self, action: Action) -> Result<(), Invalid> {
         let measured = &self.base.replicas[0];
         InHand::act(&mut self.in_hand, &measured.engine, &measured.tally, action)

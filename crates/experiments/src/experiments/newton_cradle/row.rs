@@ -3,12 +3,16 @@
 use std::f64::consts::TAU;
 
 use corpuscle_checkpoint::resume;
-use corpuscle_core::Failure;
+use corpuscle_core::{Failure, Invalid};
 
 /// Contacts within a millionth of a period after which the row counts as stuck.
 const STUCK: u32 = 1_000_000;
 
+/// Most that a hand lifts a ball, in diameters: about the length of its string.
+const FARTHEST: f64 = 8.0;
+
 /// Pendulums of period 1 whose balls have diameter 1, at rest a gap apart. Displacements count from each ball's own place.
+#[derive(Clone)]
 pub(super) struct Row {
     masses: Vec<f64>,
     restitution: f64,
@@ -101,6 +105,49 @@ impl Row {
         let mean = |values: &[f64]| values.iter().zip(&self.masses).map(|(x, m)| m * x).sum::<f64>() / mass;
         let (x, v) = (mean(&self.displacement), mean(&self.velocity));
         0.5 * mass * (v * v + TAU * TAU * x * x)
+    }
+
+    /// Brings all balls to the present, as at a contact.
+    fn settle(&mut self) {
+        (self.displacement, self.velocity) = (self.places(), self.velocities());
+        (self.since, self.crowd) = (self.now, 0);
+    }
+
+    /// Carries a ball to a displacement, as far as its neighbours let it.
+    ///
+    /// # Errors
+    /// For a ball that is not there or a displacement that is no number.
+    pub(super) fn place(&mut self, ball: usize, displacement: f64) -> Result<(), Invalid> {
+        self.known(ball, displacement)?;
+        self.settle();
+        let least = if ball == 0 { -FARTHEST } else { self.displacement[ball - 1] - self.gap };
+        let most = if ball + 1 == self.masses.len() { FARTHEST } else { self.displacement[ball + 1] + self.gap };
+        self.displacement[ball] = displacement.max(least).min(most);
+        Ok(())
+    }
+
+    /// Gives a ball another velocity.
+    ///
+    /// # Errors
+    /// As [`place`](Self::place).
+    pub(super) fn throw(&mut self, ball: usize, velocity: f64) -> Result<(), Invalid> {
+        self.known(ball, velocity)?;
+        self.settle();
+        self.velocity[ball] = velocity;
+        Ok(())
+    }
+
+    /// Reverses all velocities.
+    pub(super) fn reverse(&mut self) {
+        self.settle();
+        self.velocity.iter_mut().for_each(|v| *v = -*v);
+    }
+
+    fn known(&self, ball: usize, number: f64) -> Result<(), Invalid> {
+        if ball >= self.masses.len() {
+            return Err(Invalid::new("body", ball, format!("an index below {}", self.masses.len())));
+        }
+        if number.is_finite() { Ok(()) } else { Err(Invalid::new("place", number, "a finite number")) }
     }
 
     /// Delay from the last contact to the next one of a ball with its right neighbour: the gap is

@@ -208,19 +208,19 @@ impl Tube {
         let count = self.engines[0].particle_count() as f64;
         2.0 * self.still.collisions / ((count - 1.0) * self.still.time)
     }
+}
 
-    /// Velocity along the tube of each disc, averaged over its own slice.
-    pub(super) fn drift(&self) -> Vec<f64> {
-        const SLICES: usize = 32;
-        let engine = &self.engines[0];
-        let slice = |i: usize| ((engine.position(i)[0] / self.length * SLICES as f64) as usize).min(SLICES - 1);
-        let mut sums = [(0.0, 0.0); SLICES];
-        for i in 0..engine.particle_count() {
-            let sum = &mut sums[slice(i)];
-            *sum = (sum.0 + engine.velocity(i)[0], sum.1 + 1.0);
-        }
-        (0..engine.particle_count()).map(|i| sums[slice(i)].0 / sums[slice(i)].1).collect()
+/// Velocity along the tube of each disc, averaged over its own slice.
+pub(super) fn drift(engine: &EventDriven<2>) -> Vec<f64> {
+    const SLICES: usize = 32;
+    let length = engine.boundary().extent()[0];
+    let slice = |i: usize| ((engine.position(i)[0] / length * SLICES as f64) as usize).min(SLICES - 1);
+    let mut sums = [(0.0, 0.0); SLICES];
+    for i in 0..engine.particle_count() {
+        let sum = &mut sums[slice(i)];
+        *sum = (sum.0 + engine.velocity(i)[0], sum.1 + 1.0);
     }
+    (0..engine.particle_count()).map(|i| sums[slice(i)].0 / sums[slice(i)].1).collect()
 }
 
 impl Member for Tube {

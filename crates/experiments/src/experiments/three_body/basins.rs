@@ -17,7 +17,7 @@ use corpuscle_observe::{Chart, Check};
 use corpuscle_scene::{Body, Camera, Cell, Colouring, Label, Map, Scene};
 
 use super::start::Start;
-use crate::{Honesty, Settings, Simulation, Table, ensemble};
+use crate::{Action, Honesty, Settings, Simulation, Table, ensemble};
 use flock::{Fate, Flock, LANES, Ride, Rules};
 use probe::Probe;
 use sky::{Sky, Stars};
@@ -205,6 +205,10 @@ impl Simulation for Basins {
 
     fn moments(&self) -> Vec<f64> {
         vec![0.1 * self.end(), 0.3 * self.end()]
+    }
+
+    fn refusal(&self, _: Action) -> Option<&'static str> {
+        Some("bodies: this is a map of where each start leads")
     }
 }
 

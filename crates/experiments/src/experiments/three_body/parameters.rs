@@ -2,10 +2,44 @@
 
 use corpuscle_time::Integrator;
 
-use crate::{Kind, Parameter};
+use crate::{Kind, Parameter, Situation};
 
 /// Of fixed steps, and the precise one they are measured against; the map for planets needs a heavy star.
 const INTEGRATORS: &[&str] = Integrator::NAMES.split_at(8).0;
+
+/// What only the restricted problem reads, and what only the map.
+const RESTRICTED: &[&str] = &["jacobi_constant"];
+const MAP: &[&str] = &["resolution", "map_centre", "map_extent", "capture_radius", "release_velocity"];
+
+/// Three stars of equal masses without dust.
+const fn stars(name: &'static str) -> Situation {
+    Situation::new(name, &[RESTRICTED]).with(&[("masses", "1, 1, 1"), ("grains", "0")])
+}
+
+/// Masses of Sun, Earth and Moon are over the Sun's (IAU 2015 nominal values and DE440).
+const PRESETS: &[Situation] = &[
+    stars("paper").with(&[("masses", "1, 0.15, 0.1"), ("softening", "0.2")]),
+    stars("figure-eight"),
+    stars("lagrange").with(&[("masses", "1, 0.02, 0.01"), ("grains", "12")]),
+    stars("euler"),
+    stars("pythagorean").with(&[("masses", "3, 4, 5"), ("grains", "0")]),
+    stars("sun-earth-moon").with(&[("masses", "1, 3.0034896e-6, 3.694303e-8"), ("grains", "0")]),
+    Situation::new("restricted", &[MAP, &["integrator", "time_step", "grain_spacing", "softening", "gravity_constant"]])
+        .with(&[("masses", "0.987849415, 0.012150585"), ("grains", "12")]),
+    stars("butterfly"),
+    stars("butterfly-2"),
+    stars("moth"),
+    stars("dragonfly"),
+    stars("yin-yang"),
+    stars("goggles"),
+    stars("yarn"),
+];
+
+const VIEWS: &[Situation] = &[
+    Situation::new("paths", &[MAP]),
+    Situation::new("integrators", &[MAP]),
+    Situation::new("basins", &[&["integrator", "time_step", "grains", "grain_spacing"]]),
+];
 
 pub(super) const PARAMETERS: &[Parameter] = &[
     Parameter {
@@ -13,25 +47,7 @@ pub(super) const PARAMETERS: &[Parameter] = &[
         unit: "",
         help: "Start: three stars and dust, a periodic orbit, Lagrange's triangle, Euler's line, Burrau's Pythagorean problem, Sun, \
                Earth and Moon, or dust about two stars on circles (restricted).",
-        kind: Kind::Choice {
-            default: "paper",
-            options: &[
-                "paper",
-                "figure-eight",
-                "lagrange",
-                "euler",
-                "pythagorean",
-                "sun-earth-moon",
-                "restricted",
-                "butterfly",
-                "butterfly-2",
-                "moth",
-                "dragonfly",
-                "yin-yang",
-                "goggles",
-                "yarn",
-            ],
-        },
+        kind: Kind::Situation { default: "paper", options: PRESETS },
     },
     Parameter {
         name: "integrator",
@@ -54,7 +70,7 @@ pub(super) const PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "grains",
         unit: "",
-        help: "Number of dust grains, each with two unseen twins; unless given 24 (paper), 12 (lagrange, restricted) or none.",
+        help: "Number of dust grains, each with two unseen twins.",
         kind: Kind::Whole { default: 24, least: 0, most: 1000 },
     },
     Parameter {
@@ -66,7 +82,7 @@ pub(super) const PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "softening",
         unit: "",
-        help: "Plummer's softening length of gravity; unless given 0.2 (paper) or none.",
+        help: "Plummer's softening length of gravity.",
         kind: Kind::Real { default: 0.0, least: 0.0, most: 10.0 },
     },
     Parameter {
@@ -86,7 +102,7 @@ pub(super) const PARAMETERS: &[Parameter] = &[
         unit: "",
         help: "The paths of stars and dust; the same in two integrators, joined by lines; or a map (basins) of where dust ends that \
                is released all over the place.",
-        kind: Kind::Choice { default: "paths", options: &["paths", "integrators", "basins"] },
+        kind: Kind::Situation { default: "paths", options: VIEWS },
     },
     Parameter {
         name: "jacobi_constant",

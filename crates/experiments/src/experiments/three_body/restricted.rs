@@ -14,7 +14,7 @@ use corpuscle_observe::{Chart, Check, Estimate, Series, Style};
 use corpuscle_scene::{Body, Camera, Colour, Colouring, Label, Scene, TrailPoint};
 
 use super::failure;
-use crate::{Frame, Honesty, Settings, Simulation, Table, ensemble};
+use crate::{Action, Frame, Honesty, Settings, Simulation, Table, ensemble};
 use frame::Turning;
 use orbit::Orbit;
 
@@ -49,13 +49,12 @@ impl Restricted {
             return Err(settings.invalid("show", "paths: the map of fates wants three stars"));
         }
         let (one, two) = match *settings.list("masses") {
-            [] => (1.0 - 0.012_150_585, 0.012_150_585),
             [one, two, ..] => (one, two),
             _ => return Err(settings.invalid("masses", "those of the two stars, and one that is not used; or none")),
         };
         let frame = Turning { mu: two / (one + two) };
         let jacobi = settings.real("jacobi_constant");
-        let grains = if settings.is_given("grains") { settings.whole("grains") } else { 12 };
+        let grains = settings.whole("grains");
         // Starts between the first star and the way round the second, one in each part of that, at random: there the grain has to be
         // allowed, and moves up in the turning frame.
         let [.., second] = frame.stars();
@@ -223,6 +222,10 @@ impl Simulation for Restricted {
 
     fn moments(&self) -> Vec<f64> {
         vec![0.02 * self.end, 0.2 * self.end]
+    }
+
+    fn refusal(&self, _: Action) -> Option<&'static str> {
+        Some("three stars that move: these grains are followed with all their neighbours from their start")
     }
 }
 

@@ -11,8 +11,7 @@ pub(crate) const PERIOD_OF_EIGHT: f64 = 6.325_913_98;
 /// Offsets of the twins of every grain, along `x`.
 pub(crate) const OFFSETS: [f64; 2] = [1e-4, 1e-8];
 
-/// Masses over the Sun's (IAU 2015 nominal values and DE440), and the Moon's mean distance in astronomical units.
-const SUN_EARTH_MOON: [f64; 3] = [1.0, 3.003_489_6e-6, 3.694_303e-8];
+/// The Moon's mean distance in astronomical units.
 pub(crate) const MOON: f64 = 0.002_569_555;
 
 /// A system of three stars with dust, and how long and how finely to watch it.
@@ -47,39 +46,25 @@ pub(crate) struct Start {
 impl Start {
     pub(crate) fn new(settings: &Settings) -> Result<Self, Invalid> {
         let preset = settings.word("preset");
-        let masses = match (settings.list("masses"), preset) {
-            (&[a, b, c], _) => [a, b, c],
-            ([], "sun-earth-moon") => SUN_EARTH_MOON,
-            ([], "lagrange") => [1.0, 0.02, 0.01],
-            ([], "pythagorean") => [3.0, 4.0, 5.0],
-            ([], "paper") => [1.0, 0.15, 0.1],
-            ([], _) => [1.0; 3],
-            _ => return Err(settings.invalid("masses", "three of them, or none for the preset's own")),
+        let &[a, b, c] = settings.list("masses") else {
+            return Err(settings.invalid("masses", "three of them, or none for the preset's own"));
         };
+        let masses = [a, b, c];
         let constant = settings.real("gravity_constant");
-        let own = |key: &str, value: f64| if settings.is_given(key) { settings.real(key) } else { value };
+        let softening = settings.real("softening");
         let mut start = match preset {
-            "figure-eight" => Self::figure_eight(masses, constant, own("softening", 0.0)),
-            "lagrange" => Self::lagrange(masses, constant, own("softening", 0.0)),
-            "pythagorean" => Self::pythagorean(masses, constant, own("softening", 0.0)),
-            "euler" => Self::euler(masses, constant, own("softening", 0.0)),
-            "sun-earth-moon" => Self::sun_earth_moon(masses, constant, own("softening", 0.0)),
-            "paper" => Self::paper(masses, constant, own("softening", 0.2)),
+            "figure-eight" => Self::figure_eight(masses, constant, softening),
+            "lagrange" => Self::lagrange(masses, constant, softening),
+            "pythagorean" => Self::pythagorean(masses, constant, softening),
+            "euler" => Self::euler(masses, constant, softening),
+            "sun-earth-moon" => Self::sun_earth_moon(masses, constant, softening),
+            "paper" => Self::paper(masses, constant, softening),
             name => match Orbit::find(name) {
-                Some(orbit) => orbit.start(masses, constant, own("softening", 0.0)),
+                Some(orbit) => orbit.start(masses, constant, softening),
                 None => return Err(settings.invalid("preset", "a start that this view knows")),
             },
         };
-        let grains = if settings.is_given("grains") {
-            settings.whole("grains")
-        } else {
-            match preset {
-                "paper" => settings.whole("grains"),
-                "lagrange" => 12,
-                _ => 0,
-            }
-        };
-        start.add_dust(grains, settings.real("grain_spacing"));
+        start.add_dust(settings.whole("grains"), settings.real("grain_spacing"));
         if settings.real("duration") > 0.0 {
             start.duration = settings.real("duration");
         }

@@ -20,7 +20,7 @@ use corpuscle_time::Signal;
 use super::beads::{self, HEIGHT};
 use super::chain::{Chain, End, Ends};
 use super::theory::{Modes, dispersion, project};
-use crate::{Frame, Honesty, Settings, Simulation, ensemble};
+use crate::{Action, Frame, Honesty, Settings, Simulation, ensemble};
 use trial::{PERIODS, Trial};
 
 /// Samples in the whole run.
@@ -103,7 +103,7 @@ impl Braked {
         let modes = Modes::of(&design(fixed, vec![], dt));
         let omega_of = |j: usize| modes.map_or(f64::NAN, |modes| dispersion(omega_0, modes.phase(j)));
         let mode = settings.whole("mode");
-        if mode > count {
+        if mode > count && settings.idle_under("mode").is_none() {
             return Err(settings.invalid("mode", format!("a whole number from 1 to {count}")));
         }
         let (subject, chain, trials, end) = match settings.word("preset") {
@@ -138,8 +138,8 @@ impl Braked {
                     let most = 1.6 * omega_of(1) / omega_0;
                     return Err(settings.invalid("damping", format!("less than {most:.4}: more of it leaves no resonance")));
                 }
-                let omega =
-                    if settings.is_given("drive_frequency") { TAU * settings.real("drive_frequency") } else { omega_of(mode) };
+                let frequency = settings.real("drive_frequency");
+                let omega = if frequency > 0.0 { TAU * frequency } else { omega_of(mode) };
                 // Each period has whole steps.
                 let steps = (TAU / (omega * dt)).ceil().max(8.0);
                 let signal = Signal::Sine { amplitude, angular_frequency: omega, phase: 0.0, ramp: 2.0 * TAU / omega };
@@ -372,6 +372,10 @@ impl Simulation for Braked {
             Subject::End { .. } => [0.0, 0.3, 0.47, 0.6].map(|share| share * self.end).to_vec(),
             _ => [0.0, 0.03, 0.1, 0.5].map(|share| share * self.end).to_vec(),
         }
+    }
+
+    fn refusal(&self, _: Action) -> Option<&'static str> {
+        Some("a chain without friction, whose way back is as its way forth")
     }
 }
 

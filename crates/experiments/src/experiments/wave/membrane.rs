@@ -16,7 +16,7 @@ use corpuscle_scene::{Camera, Cell, Colour, Colouring, Line, Map, Scene};
 use corpuscle_time::{Force, Integrator, Pin, Spring, Springs, TimeDriven};
 
 use super::sponge::Sponge;
-use crate::{Frame, Honesty, Settings, Simulation};
+use crate::{Action, Frame, Honesty, Settings, Simulation};
 use parts::Sources;
 
 /// Masses along and across.
@@ -89,7 +89,13 @@ impl Membrane {
             _ => Subject::Moving(settings.real("source_speed")),
         };
         let free = ROWS - 2 * SPONGE;
-        if separation > free || width > free || (matches!(subject, Subject::DoubleSlit(..)) && width >= separation) {
+        let fits = match subject {
+            Subject::TwoSources(separation) => separation <= free,
+            Subject::DoubleSlit(separation, width) => width < separation && separation <= free,
+            Subject::SingleSlit(width) => width <= free,
+            Subject::Moving(_) => true,
+        };
+        if !fits {
             return Err(
                 settings.invalid("slit_width", format!("slits that fit between the sponges, {free} masses, and do not meet"))
             );
@@ -351,6 +357,10 @@ impl Simulation for Membrane {
 
     fn moments(&self) -> Vec<f64> {
         [0.25, 0.6].map(|share| share * self.end()).to_vec()
+    }
+
+    fn refusal(&self, _: Action) -> Option<&'static str> {
+        Some("a chain: the sources of this membrane go on by themselves")
     }
 }
 

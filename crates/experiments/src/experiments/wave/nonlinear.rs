@@ -13,7 +13,7 @@ use corpuscle_scene::{Body, Colour, Label, Line, Region, Scene};
 use corpuscle_time::{Bonds, Force, Integrator, Pin, Spring, Springs, TimeDriven, Toda};
 
 use super::beads::{self, HEIGHT};
-use crate::{Frame, Honesty, Settings, Simulation, Table, ensemble};
+use crate::{Action, Frame, Honesty, Settings, Simulation, Table, ensemble};
 use fput::Recurrence;
 use toda::Solitons;
 
@@ -266,6 +266,10 @@ impl Simulation for Nonlinear {
 
     fn moments(&self) -> Vec<f64> {
         [0.1, 0.3, 0.5, 0.75].map(|share| share * self.end).to_vec()
+    }
+
+    fn refusal(&self, _: Action) -> Option<&'static str> {
+        Some("a linear chain: solitons and recurrences are measured from their start")
     }
 }
 

@@ -1,34 +1,61 @@
 //! What can be set, and to what.
 
-use crate::{Kind, Parameter};
+use crate::{Kind, Parameter, Situation};
+
+/// What only chains that lose energy read, only nonlinear ones, only membranes.
+const FRICTION: &[&str] = &["end_impedance", "damping"];
+const NONLINEAR: &[&str] = &["nonlinearity", "solitons"];
+const MEMBRANE: &[&str] = &["wavelength", "slit_separation", "slit_width", "source_speed"];
+/// What only the linear chain without friction reads.
+const CHAIN: &[&str] = &["polarisation", "ends", "start", "density_ratio", "integrator"];
+const START: &[&str] = &["pulse_width", "mode", "drive_frequency"];
+
+/// A linear chain without friction.
+const fn chain(name: &'static str) -> Situation {
+    Situation::new(name, &[FRICTION, NONLINEAR, MEMBRANE])
+}
+
+const PRESETS: &[Situation] = &[
+    chain("density-step"),
+    chain("fixed-end").with(&[("density_ratio", "1")]),
+    chain("free-end").with(&[("density_ratio", "1"), ("ends", "free")]),
+    chain("ring").with(&[("density_ratio", "1"), ("ends", "periodic")]),
+    chain("standing-wave").with(&[("density_ratio", "1"), ("start", "mode"), ("masses", "60")]),
+    chain("shaker").with(&[("density_ratio", "1"), ("start", "drive")]),
+    chain("longitudinal").with(&[("polarisation", "longitudinal")]),
+    Situation::new("matched-end", &[CHAIN, NONLINEAR, MEMBRANE, &["mode", "drive_frequency", "time_step", "damping"]]),
+    Situation::new("damped-mode", &[CHAIN, NONLINEAR, MEMBRANE, &["pulse_width", "drive_frequency", "time_step", "end_impedance"]])
+        .with(&[("masses", "60")]),
+    Situation::new("resonance", &[CHAIN, NONLINEAR, MEMBRANE, &["pulse_width", "time_step", "end_impedance"]]).with(&[
+        ("masses", "30"),
+        ("mode", "2"),
+        ("drive_frequency", "0"),
+    ]),
+    Situation::new("dispersion", &[CHAIN, START, FRICTION, NONLINEAR, MEMBRANE, &["duration"]]).with(&[("masses", "96")]),
+    Situation::new("fermi-pasta", &[CHAIN, &["pulse_width", "drive_frequency", "solitons"], FRICTION, MEMBRANE])
+        .with(&[("masses", "31"), ("mode", "1")]),
+    Situation::new("solitons", &[CHAIN, START, FRICTION, MEMBRANE, &["nonlinearity", "amplitude"]]).with(&[("masses", "300")]),
+    Situation::new("two-sources", &[CHAIN, START, FRICTION, NONLINEAR, CHAINS, &["slit_width", "source_speed"]]),
+    Situation::new("double-slit", &[CHAIN, START, FRICTION, NONLINEAR, CHAINS, &["source_speed"]]),
+    Situation::new("single-slit", &[CHAIN, START, FRICTION, NONLINEAR, CHAINS, &["slit_separation", "source_speed"]])
+        .with(&[("slit_width", "43")]),
+    Situation::new("doppler", &[CHAIN, START, FRICTION, NONLINEAR, CHAINS, &["slit_separation", "slit_width"]]),
+];
+/// What all chains read and membranes do not.
+const CHAINS: &[&str] = &["masses", "time_step", "duration"];
+
+const STARTS: &[Situation] = &[
+    Situation::new("pulse", &[&["mode", "drive_frequency"]]),
+    Situation::new("mode", &[&["pulse_width", "drive_frequency"]]),
+    Situation::new("drive", &[&["pulse_width", "mode"]]),
+];
 
 pub(super) static PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "preset",
         unit: "",
         help: "A ready-made set of the parameters below; those given beside it win.",
-        kind: Kind::Choice {
-            default: "density-step",
-            options: &[
-                "density-step",
-                "fixed-end",
-                "free-end",
-                "ring",
-                "standing-wave",
-                "shaker",
-                "longitudinal",
-                "matched-end",
-                "damped-mode",
-                "resonance",
-                "dispersion",
-                "fermi-pasta",
-                "solitons",
-                "two-sources",
-                "double-slit",
-                "single-slit",
-                "doppler",
-            ],
-        },
+        kind: Kind::Situation { default: "density-step", options: PRESETS },
     },
     Parameter {
         name: "polarisation",
@@ -46,7 +73,7 @@ pub(super) static PARAMETERS: &[Parameter] = &[
         name: "start",
         unit: "",
         help: "A Gaussian pulse running to the right, a normal mode, or rest with a shaker (drive) at the left end.",
-        kind: Kind::Choice { default: "pulse", options: &["pulse", "mode", "drive"] },
+        kind: Kind::Situation { default: "pulse", options: STARTS },
     },
     Parameter {
         name: "masses",
@@ -82,8 +109,9 @@ pub(super) static PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "drive_frequency",
         unit: "1/time",
-        help: "Frequency f of the shaker; waves longer than two spacings exist only below f = sqrt(stiffness/mass)/pi.",
-        kind: Kind::Real { default: 0.025, least: 1e-6, most: 1e6 },
+        help: "Frequency f of the shaker; waves longer than two spacings exist only below f = sqrt(stiffness/mass)/pi. Resonance: 0 \
+               for that of the mode.",
+        kind: Kind::Real { default: 0.025, least: 0.0, most: 1e6 },
     },
     Parameter {
         name: "stiffness",
@@ -173,22 +201,3 @@ pub(super) static PARAMETERS: &[Parameter] = &[
         kind: Kind::Real { default: 0.4, least: 0.05, most: 2.0 },
     },
 ];
-
-/// What each preset changes of the defaults, as one would write it on the command line.
-pub(super) fn preset(name: &str) -> &'static [(&'static str, &'static str)] {
-    match name {
-        "fixed-end" | "matched-end" => &[("density_ratio", "1")],
-        "free-end" => &[("density_ratio", "1"), ("ends", "free")],
-        "ring" => &[("density_ratio", "1"), ("ends", "periodic")],
-        "standing-wave" => &[("density_ratio", "1"), ("start", "mode"), ("masses", "60")],
-        "shaker" => &[("density_ratio", "1"), ("start", "drive")],
-        "longitudinal" => &[("polarisation", "longitudinal")],
-        "damped-mode" => &[("density_ratio", "1"), ("masses", "60")],
-        "resonance" => &[("density_ratio", "1"), ("masses", "30"), ("mode", "2")],
-        "dispersion" => &[("masses", "96"), ("density_ratio", "1")],
-        "fermi-pasta" => &[("masses", "31"), ("mode", "1"), ("density_ratio", "1")],
-        "solitons" => &[("masses", "300"), ("density_ratio", "1")],
-        "single-slit" => &[("slit_width", "43")],
-        _ => &[],
-    }
-}

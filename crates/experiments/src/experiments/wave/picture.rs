@@ -1,6 +1,7 @@
 //! The wave experiment's picture: the chain with its springs, ends and density step, displacements drawn larger than they
 //! are, and d'Alembert's string behind it.
 
+use corpuscle_core::Invalid;
 use corpuscle_scene::{Body, Colour, Label, Line, Region, Scene};
 
 use super::beads::{self, HEIGHT};
@@ -9,6 +10,14 @@ use super::{Start, Wave, theory};
 
 /// Largest displacement drawn, over the length.
 const REACH: f64 = 0.19;
+
+/// Which mass a body of the picture is, and how its displacement is drawn: at `rest + scale u` along an axis.
+pub(super) struct Drawn {
+    pub(super) mass: usize,
+    pub(super) axis: usize,
+    pub(super) rest: f64,
+    pub(super) scale: f64,
+}
 
 impl Wave {
     pub(super) fn picture(&self, scene: &mut Scene) {
@@ -26,15 +35,52 @@ impl Wave {
             let (mass, slow) = (self.material.mass * self.ratio, c / self.ratio.sqrt());
             scene.labels.push(label(0.5 * (self.step + length), format!("mass {mass}, c = {slow:.3}")));
         }
-        let scale = REACH * length / self.reference();
-        match design.polarisation {
-            Polarisation::Transverse => self.string(scene, 0.0, scale, half),
-            Polarisation::Longitudinal => {
-                self.string(scene, 0.42 * half, 0.55 * scale, half);
-                self.planes(scene, -0.45 * half, 0.22 * half);
-            }
+        let scale = self.scale();
+        let (middle, shown) = self.across();
+        self.string(scene, middle, shown, half);
+        if design.polarisation == Polarisation::Longitudinal {
+            self.planes(scene, -0.45 * half, 0.22 * half);
         }
         scene.caption = self.caption(scale);
+    }
+
+    /// How much larger than they are displacements are drawn.
+    fn scale(&self) -> f64 {
+        REACH * self.chain.design().length() / self.reference()
+    }
+
+    /// Height about which displacements are drawn across, and how much larger.
+    fn across(&self) -> (f64, f64) {
+        let half = 0.5 * HEIGHT * self.chain.design().length();
+        match self.chain.design().polarisation {
+            Polarisation::Transverse => (0.0, self.scale()),
+            Polarisation::Longitudinal => (0.42 * half, 0.55 * self.scale()),
+        }
+    }
+
+    /// How much larger displacements are drawn along the chain, as far as masses keep their order.
+    fn scale_along(&self) -> f64 {
+        0.8 * self.material.speed() / (self.fastest() * self.ratio.sqrt().max(1.0))
+    }
+
+    /// How a body of the picture is drawn.
+    ///
+    /// # Errors
+    /// When there is none of this number.
+    pub(super) fn drawn(&self, body: usize) -> Result<Drawn, Invalid> {
+        let design = self.chain.design();
+        let count = design.count();
+        let along = design.polarisation == Polarisation::Longitudinal && body >= count;
+        let mass = if along { body - count } else { body };
+        if mass >= count {
+            return Err(Invalid::new("body", body, "one of the masses in the picture"));
+        }
+        Ok(if along {
+            Drawn { mass, axis: 0, rest: design.place(mass), scale: self.scale_along() }
+        } else {
+            let (rest, scale) = self.across();
+            Drawn { mass, axis: 1, rest, scale }
+        })
     }
 
     fn caption(&self, scale: f64) -> String {
@@ -111,7 +157,7 @@ impl Wave {
             let line = |part: i32| Line { from: point(part), to: point(part + 1), width: 1.0, colour: Colour::Accent(5) };
             scene.lines.extend((0..PARTS).map(line));
         }
-        beads::string(scene, &self.chain, height, |n| self.radius(n), |n| self.species(n));
+        beads::string(scene, self.on_show(), height, |n| self.radius(n), |n| self.species(n));
         self.ends(scene, middle, half);
     }
 
@@ -140,15 +186,14 @@ impl Wave {
     /// A longitudinal chain as planes that crowd and thin out, displacements enlarged as far as they keep their order.
     fn planes(&self, scene: &mut Scene, middle: f64, half: f64) {
         let design = self.chain.design();
-        let steepest = self.fastest() / self.material.speed() * self.ratio.sqrt().max(1.0);
-        let scale = 0.8 / steepest;
-        let places: Vec<f64> = (0..design.count()).map(|n| design.place(n) + scale * self.chain.displacement(n)).collect();
+        let scale = self.scale_along();
+        let places: Vec<f64> = (0..design.count()).map(|n| design.place(n) + scale * self.on_show().displacement(n)).collect();
         for (n, &x) in places.iter().enumerate() {
             let colour = if self.species(n) == 1.0 { Colour::Accent(1) } else { Colour::Accent(0) };
             scene.lines.push(Line { from: [x, middle - half, 0.0], to: [x, middle + half, 0.0], width: 2.0, colour });
             scene.bodies.push(Body {
                 position: [x, middle, 0.0],
-                velocity: [self.chain.velocity(n), 0.0, 0.0],
+                velocity: [self.on_show().velocity(n), 0.0, 0.0],
                 time: self.chain.time(),
                 radius: self.radius(n),
                 shade: self.species(n),
@@ -158,7 +203,7 @@ impl Wave {
             let (from, to) = ([pair[0], middle, 0.0], [pair[1], middle, 0.0]);
             scene.lines.push(Line { from, to, width: 1.2, colour: Colour::Faint });
         }
-        for (x, u) in self.chain.anchors() {
+        for (x, u) in self.on_show().anchors() {
             let x = x + scale * u;
             let (from, to) = ([x, middle - 1.2 * half, 0.0], [x, middle + 1.2 * half, 0.0]);
             scene.lines.push(Line { from, to, width: 4.0, colour: Colour::Wall });

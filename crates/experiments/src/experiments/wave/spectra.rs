@@ -12,7 +12,7 @@ use corpuscle_time::Integrator;
 
 use super::chain::{Chain, Design, Ends, Polarisation};
 use super::theory::{self, Modes};
-use crate::{Frame, Honesty, Settings, Simulation, Table};
+use crate::{Action, Frame, Honesty, Settings, Simulation, Table};
 
 /// Stream of the random phases.
 const STREAM: u64 = 0xd15b;
@@ -269,5 +269,9 @@ impl Simulation for Spectra {
 
     fn moments(&self) -> Vec<f64> {
         [0.02, 0.1, 0.4].map(|share| share * self.end()).to_vec()
+    }
+
+    fn refusal(&self, _: Action) -> Option<&'static str> {
+        Some("a chain with one wave: in this one all modes are measured at once")
     }
 }
