@@ -3,15 +3,16 @@
 //! A square lattice of masses and springs under tension, `m u'' = kappa (sum of the four neighbours' u - 4 u)`; each mass
 //! moves across the membrane only, so that one number says where it is. Its edges swallow what reaches them.
 
+mod doppler;
 mod parts;
+mod screen;
 mod theory;
 
 use std::f64::consts::{PI, TAU};
 
 use corpuscle_checkpoint::{Resume, resume};
 use corpuscle_core::{Axis, Boundary, Engine, Failure, Invalid, Particles, Vector};
-use corpuscle_observe::chart::Axis as ChartAxis;
-use corpuscle_observe::{Chart, Check, Series, Style, spectrum};
+use corpuscle_observe::{Chart, Check};
 use corpuscle_scene::{Camera, Cell, Colour, Colouring, Line, Map, Scene};
 use corpuscle_time::{Force, Integrator, Pin, Spring, Springs, TimeDriven};
 
@@ -214,6 +215,17 @@ impl Membrane {
             self.lock.iter().map(|(c, s)| share * c.hypot(*s)).collect()
         })
     }
+
+    fn caption(&self) -> String {
+        let wavelength = PI / libm::asin(self.half_sine(self.angular_frequency));
+        let subject = match self.subject {
+            Subject::TwoSources(apart) => format!("two sources {apart} apart"),
+            Subject::DoubleSlit(apart, width) => format!("two slits {apart} apart, {width} wide"),
+            Subject::SingleSlit(width) => format!("a slit {width} wide"),
+            Subject::Moving(share) => format!("a source at {share} of the speed of long waves"),
+        };
+        format!("{subject}   wavelength {wavelength:.1} spacings   the edges swallow what reaches them")
+    }
 }
 
 impl Subject {
@@ -361,160 +373,5 @@ impl Simulation for Membrane {
 
     fn refusal(&self, _: Action) -> Option<&'static str> {
         Some("a chain: the sources of this membrane go on by themselves")
-    }
-}
-
-impl Membrane {
-    fn caption(&self) -> String {
-        let wavelength = PI / libm::asin(self.half_sine(self.angular_frequency));
-        let subject = match self.subject {
-            Subject::TwoSources(apart) => format!("two sources {apart} apart"),
-            Subject::DoubleSlit(apart, width) => format!("two slits {apart} apart, {width} wide"),
-            Subject::SingleSlit(width) => format!("a slit {width} wide"),
-            Subject::Moving(share) => format!("a source at {share} of the speed of long waves"),
-        };
-        format!("{subject}   wavelength {wavelength:.1} spacings   the edges swallow what reaches them")
-    }
-
-    /// Amplitude and phase that the origins send to a mass of the screen by Huygens' principle in two dimensions:
-    /// `sum exp(i k r)/sqrt(r)`, each times the cosine of its angle where it comes through a wall (Sommerfeld 1954, *Optics*,
-    /// section 34), with the wavenumber of the lattice in that direction.
-    fn huygens(&self, row: f64) -> (f64, f64) {
-        let s = self.half_sine(self.angular_frequency);
-        let through = !matches!(self.subject, Subject::TwoSources(_));
-        let mut sum = (0.0, 0.0);
-        for (from, column) in self.subject.origins() {
-            let (x, y) = (SCREEN as f64 - column, row - from);
-            let r = x.hypot(y);
-            let phase = theory::phase_in_direction(s, x / r, (y / r).abs()) * r;
-            let weight = if through { x / r } else { 1.0 } / r.sqrt();
-            let (sine, cosine) = libm::sincos(phase);
-            sum = (sum.0 + weight * cosine, sum.1 + weight * sine);
-        }
-        sum
-    }
-
-    fn chart_of_screen(&self) -> Option<Chart> {
-        let amplitudes = self.amplitudes()?;
-        let expected: Vec<f64> = (0..ROWS).map(|row| self.huygens(row as f64)).map(|(c, s)| c.hypot(s)).collect();
-        let inner = SPONGE..ROWS - SPONGE;
-        let dot = |a: &[f64], b: &[f64]| inner.clone().map(|row| a[row] * b[row]).sum::<f64>();
-        let scale = dot(&amplitudes, &expected) / dot(&expected, &expected);
-        let points = |values: &[f64], scale: f64| {
-            inner.clone().map(|row| (row as f64 - (ROWS / 2) as f64, scale * values[row])).collect::<Vec<_>>()
-        };
-        Some(
-            Chart::new(
-                "screen",
-                "Amplitude on the screen",
-                ChartAxis::linear("place along the screen", "spacings"),
-                ChartAxis::linear("amplitude", ""),
-            )
-            .with(Series::new("Huygens: Σ exp(ikr)/√r", Style::Theory, points(&expected, scale)))
-            .with(Series::new("measured", Style::Points, points(&amplitudes, 1.0)))
-            .noting("Dark where paths differ by half a wavelength, or one and a half; Huygens' curve is scaled once, to fit."),
-        )
-    }
-
-    /// Dark places between the sponges, in rows from the first: minima of values at the rows, each on its parabola.
-    fn minima(values: &[f64]) -> Vec<f64> {
-        (SPONGE + 4..ROWS - SPONGE - 4)
-            .filter(|&row| values[row] < values[row - 1] && values[row] <= values[row + 1])
-            .map(|row| {
-                let [before, here, after] = [row - 1, row, row + 1].map(|row| values[row] * values[row]);
-                row as f64 + 0.5 * (before - after) / (before - 2.0 * here + after)
-            })
-            .collect()
-    }
-
-    fn check_of_fringes(&self) -> Option<Check> {
-        let amplitudes = self.amplitudes()?;
-        let expected: Vec<f64> = (0..ROWS).map(|row| self.huygens(row as f64)).map(|(c, s)| c.hypot(s)).collect();
-        let (found, predicted) = (Self::minima(&amplitudes), Self::minima(&expected));
-        if predicted.len() < 2 {
-            return None;
-        }
-        let apart = (predicted[predicted.len() - 1] - predicted[0]) / (predicted.len() - 1) as f64;
-        let nearest = |place: &f64| found.iter().map(|other| (other - place).abs()).fold(f64::INFINITY, f64::min);
-        let worst = predicted.iter().map(nearest).fold(0.0, f64::max);
-        let narrow = !matches!(self.subject, Subject::SingleSlit(_));
-        let (bound, why) = if narrow {
-            (
-                0.05,
-                "path difference (j + 1/2) λ, with the lattice's λ in each direction; bound: an echo of 10 % from the edges would \
-                    move them by a twentieth of their distance",
-            )
-        } else {
-            (
-                0.15,
-                "Huygens and Kirchhoff, who take the wave in the slit for the one that comes in: right but for the slit's edges, \
-                    a quarter wavelength each",
-            )
-        };
-        Some(Check::at_most(
-            format!("{} dark places on the screen: largest deviation over their distance, {apart:.1} spacings", predicted.len()),
-            worst / apart,
-            bound,
-            why,
-        ))
-    }
-
-    /// Frequencies heard ahead of and behind a moving source, with what the lattice makes of them.
-    fn heard(&self, share: f64) -> Vec<(&'static str, spectrum::Line, f64)> {
-        let phase = |omega: f64| 2.0 * libm::asin(self.half_sine(omega));
-        let speed = share * self.omega_0;
-        [("ahead", speed), ("behind", -speed)]
-            .into_iter()
-            .zip(&self.heard)
-            .filter_map(|((name, speed), series)| {
-                // From when waves arrive, until the source does or the run ends.
-                let far = (COLUMNS - 2 * SPONGE - 14) as f64;
-                let arrival = if speed > 0.0 { far } else { 10.0 } / (self.omega_0 * self.dt)
-                    + 4.0 * TAU / (self.angular_frequency * self.dt);
-                let until = if speed > 0.0 { 0.9 * far / (share * self.omega_0 * self.dt) } else { series.len() as f64 };
-                let (from, until) = (arrival as usize, (until as usize).min(series.len()));
-                let line = spectrum::strongest_line(series.get(from..until)?, self.dt)?;
-                Some((name, line, theory::doppler(self.angular_frequency, speed, phase)?))
-            })
-            .collect()
-    }
-
-    fn checks_of_doppler(&self, share: f64) -> Vec<Check> {
-        if self.steps < self.last || share >= 0.9 {
-            return vec![];
-        }
-        let check = |(name, line, expected): (&str, spectrum::Line, f64)| {
-            let classical = self.angular_frequency / if name == "ahead" { 1.0 - share } else { 1.0 + share };
-            Check::at_most(
-                format!("frequency {name} of the source, {:.5}: deviation from {expected:.5}", line.frequency.mean),
-                (line.frequency.mean - expected).abs(),
-                0.1 * line.resolution,
-                format!(
-                    "Doppler 1842: ω' − v k(ω') = ω on the lattice, ω/(1 ∓ v/c) = {classical:.5} for long waves; bound: a tenth of the \
-                     width of a line, for an amplitude that changes meanwhile"
-                ),
-            )
-        };
-        self.heard(share).into_iter().map(check).collect()
-    }
-
-    fn chart_of_doppler(&self, share: f64) -> Chart {
-        let mut chart = Chart::new(
-            "doppler",
-            "What is heard ahead of and behind the source",
-            ChartAxis::linear("time t", ""),
-            ChartAxis::linear("displacement u", ""),
-        );
-        for (name, series) in ["ahead", "behind"].into_iter().zip(&self.heard) {
-            let stride = series.len().div_ceil(1500).max(1);
-            let points = series.iter().enumerate().step_by(stride).map(|(step, &u)| ((step + 1) as f64 * self.dt, u));
-            chart = chart.with(Series::new(name, Style::Line, points));
-        }
-        let heard: Vec<String> = self
-            .heard(share)
-            .iter()
-            .map(|(name, line, theory)| format!("{name} {:.4} (theory {theory:.4})", line.frequency.mean))
-            .collect();
-        chart.noting(format!("The source shakes at ω = {:.4}; heard: {}.", self.angular_frequency, heard.join(", ")))
     }
 }
