@@ -171,7 +171,7 @@ impl<'a, const D: usize> Pass<'a, D> {
             let place = Place {
                 position: ring.places(),
                 room: ring.room(),
-                own: ring.at((start + own.start) as isize),
+                own: ring.at(start + own.start),
                 inverse_mass: self.inverse_mass.from(own.start),
             };
             let soon = soon.map(|soon| soon.get(own.start..).unwrap_or(&[]));
