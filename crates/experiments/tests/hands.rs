@@ -14,7 +14,7 @@ fn quick(name: &str) -> &'static [(&'static str, &'static str)] {
         "entropy" => &[("particles", "40"), ("replicas", "2")],
         "ideal-gas" => &[("particles", "40"), ("replicas", "3"), ("points", "3"), ("dense_packings", "0.1")],
         "granular" => &[("crowd", "300"), ("replicas", "2")],
-        "sound" => &[("particles", "200"), ("replicas", "2")],
+        "sound" => &[("particles", "200"), ("replicas", "3")],
         "lennard-jones" => &[("particles", "250"), ("duration", "20")],
         "atmosphere" | "billiard" | "diffusion" | "engines" | "galton" => &[("replicas", "3")],
         _ => &[],

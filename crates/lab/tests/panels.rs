@@ -375,7 +375,7 @@ fn deeds_of_a_file_are_listed() {
 #[test]
 fn refused_tools_are_grey_and_say_why() {
     use corpuscle_lab::tools::Tool;
-    let mut harness = window("galton", &[("replicas", "2"), ("balls", "20")], Language::English, [1280.0, 800.0]);
+    let mut harness = window("galton", &[("replicas", "3"), ("balls", "20")], Language::English, [1280.0, 800.0]);
     harness.run_steps(2);
     let name = Language::English.text(Tool::Throw.text());
     let button = harness.get_by_label(name);
