@@ -10,6 +10,7 @@ fn part(experiment: &str) -> f64 {
     match experiment {
         "wave" => 0.002,
         "three-body" => 0.2,
+        "billiard" => 0.5,
         _ => 0.02,
     }
 }
@@ -28,7 +29,8 @@ fn seen(simulation: &dyn Simulation) -> String {
     simulation.draw(&mut scene);
     let honesty = simulation.honesty();
     let measured = (simulation.charts(), simulation.checks(), simulation.tables());
-    format!("{scene:?} {measured:?} {honesty:?} {:?} {:?}", simulation.moments(), simulation.end())
+    let (frame, moments, end) = (simulation.frame(), simulation.moments(), simulation.end());
+    format!("{scene:?} {frame:?} {measured:?} {honesty:?} {moments:?} {end:?}")
 }
 
 /// What is seen at a time of a run with these settings; or the key whose value is refused, of a run that breaks down none.
@@ -42,7 +44,7 @@ fn run(experiment: &Experiment, settings: &Settings, until: Option<f64>) -> Resu
 /// Other values of a parameter.
 fn others(parameter: &Parameter, value: &Value) -> Vec<Value> {
     let candidates = match value {
-        Value::Real(x) if *x == 0.0 => vec![Value::Real(0.02), Value::Real(0.6), Value::Real(7.0)],
+        Value::Real(x) if *x == 0.0 => [0.02, 0.6, 7.0, 500.0].map(Value::Real).to_vec(),
         Value::Real(x) => [1.25, 0.75, 1.01].map(|factor| Value::Real(factor * x)).to_vec(),
         Value::Whole(n) => vec![Value::Whole(n + 1), Value::Whole(n + 2), Value::Whole(n / 2)],
         Value::Flag(on) => vec![Value::Flag(!on)],
