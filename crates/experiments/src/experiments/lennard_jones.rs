@@ -282,8 +282,7 @@ impl Fluid {
     fn held(&self) -> Result<Held, Invalid> {
         let mut particles = self.engine.snapshot();
         particles.radius.fill(ROOM);
-        let engine =
-            TimeDriven::new(self.engine.boundary().clone(), particles, self.state.forces(), self.engine.integrator().clone())?;
+        let engine = TimeDriven::new(self.engine.boundary().clone(), particles, self.state.forces(), self.engine.integrator())?;
         Ok(Held { engine, since: self.engine.time() })
     }
 

@@ -48,9 +48,8 @@ impl Restricted {
         if settings.word("show") == "basins" {
             return Err(settings.invalid("show", "paths: the map of fates wants three stars"));
         }
-        let (one, two) = match *settings.list("masses") {
-            [one, two, ..] => (one, two),
-            _ => return Err(settings.invalid("masses", "those of the two stars, and one that is not used; or none")),
+        let [one, two, ..] = *settings.list("masses") else {
+            return Err(settings.invalid("masses", "those of the two stars, and one that is not used; or none"));
         };
         let frame = Turning { mu: two / (one + two) };
         let jacobi = settings.real("jacobi_constant");

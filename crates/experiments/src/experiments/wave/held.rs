@@ -82,7 +82,9 @@ mod tests {
     fn started(values: &[(&str, &str)]) -> Box<dyn Simulation> {
         let experiment = find("wave").unwrap();
         let mut settings = Settings::new(experiment.parameters, 1);
-        values.iter().for_each(|(key, text)| settings.set_text(key, text).unwrap());
+        for (key, text) in values {
+            settings.set_text(key, text).unwrap();
+        }
         (experiment.start)(&settings).unwrap()
     }
 
