@@ -19,7 +19,7 @@ impl Order {
 
     pub(super) fn mean(orders: &[Self]) -> Self {
         let sum = orders.iter().fold([0.0; 2], |sum, order| [sum[0] + order.0[0], sum[1] + order.0[1]]);
-        Self(sum.map(|part| part / orders.len() as f64))
+        Self(sum.map(|part| part / orders.len().max(1) as f64))
     }
 
     /// Of the bonds to the nearest six of these.
