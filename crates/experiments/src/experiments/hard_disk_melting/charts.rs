@@ -82,11 +82,12 @@ impl Melting {
     }
 
     pub(super) fn order_chart(&self) -> Chart {
+        // A floor rather than a theory that the points are held against.
         let chance = 0.5 * (std::f64::consts::PI / (6.0 * self.count as f64)).sqrt();
         let (least, most) = (self.packings[0], self.packings[self.packings.len() - 1]);
         let chart =
             Chart::new("order", "Order of directions", Axis::linear("packing fraction", ""), Axis::linear("|ψ₆| of a sheet", ""))
-                .with(Series::theory("discs that know nothing of each other", least, most, 2, Scale::Linear, |_| chance));
+                .with(Series::new("discs that know nothing of each other", Style::Line, [(least, chance), (most, chance)]));
         self.with_both_starts(chart, |packing, start| self.order(packing, start)).noting(
             "Grains that have grown in different directions cancel: a low value above the transition is a crystal in pieces.",
         )
