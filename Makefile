@@ -23,9 +23,10 @@ test: setup-test ## Every test: units, physics against theory, pictures, the com
 	$(CARGO) test --release --locked --workspace
 	@scripts/check-rooms.sh
 
-soak: ## An hour or so: 10^9 collisions, 10^8 contacts of grains, 10^5 periods of three bodies; nothing may drift, sink or stall
+soak: ## An hour or so: 10^9 collisions, 10^8 contacts of grains, 10^5 periods of three bodies, sixteen liquids; nothing may drift, sink or stall
 	$(CARGO) test --release --locked -p corpuscle-event --test engine -- soak --ignored --nocapture --test-threads=1
 	$(CARGO) test --release --locked -p corpuscle-time --test engine -- soak --ignored --nocapture --test-threads=1
+	$(CARGO) test --release --locked -p corpuscle-experiments --test beyond -- soak --ignored --nocapture
 
 kill: setup-test ## A quarter of an hour: 200 kills at random moments, each run resumed to the same bits
 	$(CARGO) test --release --locked -p corpuscle --test kill -- --ignored --nocapture

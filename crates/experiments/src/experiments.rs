@@ -8,6 +8,7 @@ pub(crate) mod engines;
 pub(crate) mod entropy;
 pub(crate) mod galton;
 pub(crate) mod granular;
+pub(crate) mod hard_disk_melting;
 pub(crate) mod ideal_gas;
 pub(crate) mod lennard_jones;
 pub(crate) mod newton_cradle;

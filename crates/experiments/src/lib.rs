@@ -64,6 +64,7 @@ pub static REGISTRY: &[&Experiment] = &[
     &experiments::galton::EXPERIMENT,
     &experiments::diffusion::EXPERIMENT,
     &experiments::engines::EXPERIMENT,
+    &experiments::hard_disk_melting::EXPERIMENT,
 ];
 
 /// The experiment of this name.

@@ -112,6 +112,17 @@ fn engines() {
     assert_eq!(refused("engines", &[("hardness", "1")]), "hardness");
 }
 
+/// The liquid at five packings, and the crystal within the error of its published pressure.
+#[test]
+fn hard_disk_melting() {
+    let few = [("side", "8"), ("packings", "0.3,0.4,0.5,0.56,0.6,0.8"), ("duration", "12")];
+    agrees_over_more_seeds("hard-disk-melting", &few, 10);
+    let fewer = [("side", "8"), ("small_side", "8"), ("packings", "0.6,0.7,0.8"), ("replicas", "2"), ("duration", "5")];
+    repeats("hard-disk-melting", &fewer);
+    assert_eq!(refused("hard-disk-melting", &[("side", "9")]), "side");
+    assert_eq!(refused("hard-disk-melting", &[("packing_fraction", "0.8"), ("begin", "disorder")]), "packing_fraction");
+}
+
 /// Three agreements a run, each of a series that has to be long against its own correlations.
 #[test]
 fn lennard_jones() {
@@ -121,8 +132,9 @@ fn lennard_jones() {
     assert_eq!(refused("lennard-jones", &[("state", "solid"), ("particles", "300")]), "particles");
 }
 
+/// Published values of liquids: the noise of their pressure takes long runs.
 #[test]
-#[ignore = "takes minutes"]
-fn lennard_jones_liquid() {
+#[ignore = "minutes: make soak"]
+fn soak_lennard_jones_liquid() {
     agrees_over_more_seeds("lennard-jones", &[], 16);
 }

@@ -91,6 +91,9 @@ fn every_experiment() {
             "galton" => (&[("replicas", "4"), ("balls", "60")], 1.0),
             "diffusion" => (&[("replicas", "3"), ("particles", "150"), ("duration", "0.6")], 1.0),
             "engines" => (&[("replicas", "3"), ("particles", "40"), ("duration", "6")], 1.0),
+            "hard-disk-melting" => {
+                (&[("side", "8"), ("small_side", "8"), ("packings", "0.6,0.7"), ("replicas", "2"), ("duration", "4")], 1.0)
+            }
             _ => (&[], 1.0),
         };
         assert_frame(name, experiment(name, values, share));

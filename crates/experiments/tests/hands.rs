@@ -17,6 +17,7 @@ fn quick(name: &str) -> &'static [(&'static str, &'static str)] {
         "sound" => &[("particles", "200"), ("replicas", "3")],
         "lennard-jones" => &[("particles", "250"), ("duration", "20")],
         "atmosphere" | "billiard" | "diffusion" | "engines" | "galton" => &[("replicas", "3")],
+        "hard-disk-melting" => &[("side", "8"), ("small_side", "8"), ("packings", "0.7"), ("replicas", "2"), ("duration", "4")],
         _ => &[],
     }
 }

@@ -166,7 +166,8 @@ fn pictures(pictures: &[Picture]) -> String {
     }
     let mut out = String::from("<section id=\"pictures\">\n<h2>The system</h2>\n<div class=\"pictures\">\n");
     for picture in pictures {
-        let caption = escape(&picture.caption);
+        // Gaps part a caption on its picture; in running text they close up.
+        let caption = escape(&picture.caption.split("   ").collect::<Vec<_>>().join(" · "));
         // Many a caption begins with the time itself.
         let time = if caption.starts_with("t =") { String::new() } else { format!("<b>t = {}</b> ", number(picture.time)) };
         let _ = writeln!(

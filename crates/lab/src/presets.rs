@@ -89,6 +89,15 @@ const PRESETS: &[(&str, &[Preset])] = &[
             preset("a thin gas", &[("packing_fraction", "0.02")]),
         ],
     ),
+    (
+        "hard-disk-melting",
+        &[
+            preset("between liquid and crystal", &[]),
+            preset("liquid", &[("packing_fraction", "0.66")]),
+            preset("crystal", &[("packing_fraction", "0.74")]),
+            preset("grains without order", &[("packing_fraction", "0.73"), ("begin", "disorder")]),
+        ],
+    ),
 ];
 
 /// The presets of an experiment.

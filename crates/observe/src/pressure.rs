@@ -142,8 +142,8 @@ impl<const D: usize> VirialPressure<D> {
 
     /// The compressibility factor `Z = P V / (N k T)`.
     ///
-    /// In a periodic box of `N` hard spheres it differs from that of the infinite system by terms of order `1/N`: the
-    /// second virial coefficient, for one, counts `N - 1` partners, so that `Z - 1` is low by the factor `1 - 1/N`.
+    /// In a periodic box of `N` hard spheres it differs from that of the infinite system by terms of order `1/N`:
+    /// [`finite_size_shift`](crate::theory::finite_size_shift).
     pub fn compressibility(&self) -> Estimate {
         let work = blocking(&self.virial.rates()).estimate / (D as f64 * self.ideal);
         Estimate { mean: 1.0 + work.mean, ..work }

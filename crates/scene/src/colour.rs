@@ -55,6 +55,24 @@ pub enum Colouring {
         /// Value at the upper end of the scale.
         most: f64,
     },
+    /// By the bodies' own `shade`, an angle whose two ends are one direction, on [`hue_circle`].
+    Angle {
+        /// Name of the quantity.
+        name: String,
+        /// Unit shown in the legend; empty when reduced.
+        unit: String,
+        /// Value at the lower end of the circle.
+        least: f64,
+        /// Value at the upper end, of the same colour.
+        most: f64,
+    },
+}
+
+impl Colouring {
+    /// The colour map of a continuous colouring.
+    pub fn map(&self) -> fn(f64) -> [f64; 3] {
+        if matches!(self, Self::Angle { .. }) { hue_circle } else { viridis }
+    }
 }
 
 /// What the bodies' `shade` holds.
@@ -101,10 +119,33 @@ pub fn viridis(x: f64) -> [f64; 3] {
         [189, 223, 38],
         [253, 231, 37],
     ];
+    between(&KNOTS, x)
+}
+
+/// A closed circle of hues at `0 <= x <= 1`, from sand by rose, violet and blue in the middle, by teal and green back to sand: of one
+/// chroma, 0.11, in Oklab (Ottosson 2020), with the lightness `0.70 + 0.11 cos(2 pi x)`, so that opposite hues differ in it, too.
+pub fn hue_circle(x: f64) -> [f64; 3] {
+    const KNOTS: [[u8; 3]; 11] = [
+        [235, 183, 108],
+        [247, 161, 133],
+        [227, 139, 162],
+        [184, 123, 183],
+        [132, 119, 192],
+        [78, 127, 189],
+        [3, 146, 176],
+        [39, 170, 154],
+        [120, 188, 128],
+        [189, 193, 107],
+        [235, 183, 108],
+    ];
+    between(&KNOTS, x)
+}
+
+fn between(knots: &[[u8; 3]; 11], x: f64) -> [f64; 3] {
     let place = x.clamp(0.0, 1.0) * 10.0;
     let knot = (place as usize).min(9);
     let part = place - knot as f64;
-    std::array::from_fn(|c| (f64::from(KNOTS[knot][c]) * (1.0 - part) + f64::from(KNOTS[knot + 1][c]) * part) / 255.0)
+    std::array::from_fn(|c| (f64::from(knots[knot][c]) * (1.0 - part) + f64::from(knots[knot + 1][c]) * part) / 255.0)
 }
 
 /// Background and foreground of a picture.

@@ -6,7 +6,7 @@ mod colour;
 mod trail;
 
 pub use camera::Camera;
-pub use colour::{Colour, Colouring, Palette, Shade, okabe_ito, viridis};
+pub use colour::{Colour, Colouring, Palette, Shade, hue_circle, okabe_ito, viridis};
 pub use trail::{Trail, TrailPoint};
 
 /// A disc (sphere) with its own clock: the renderer moves it along `position + velocity (t - time) + field (t - time)^2 / 2`
@@ -21,8 +21,8 @@ pub struct Body {
     pub time: f64,
     /// Radius, in the simulation's length.
     pub radius: f64,
-    /// What the colouring reads: an index of a species for [`Colouring::Species`], a value for [`Colouring::Value`], a mass for
-    /// [`Colouring::Energy`]; [`Colouring::Speed`] and [`Colouring::Height`] take velocity and position instead.
+    /// What the colouring reads: an index of a species for [`Colouring::Species`], a value for [`Colouring::Value`] and
+    /// [`Colouring::Angle`], a mass for [`Colouring::Energy`]; [`Colouring::Speed`] and [`Colouring::Height`] take velocity and position instead.
     pub shade: f64,
 }
 

@@ -20,6 +20,7 @@ mod pair;
 use corpuscle_checkpoint::{Resume, resume};
 use corpuscle_core::{Engine, Failure, Invalid};
 use corpuscle_observe::chart::{Axis, Scale, Series, Style};
+use corpuscle_observe::theory::hard_discs;
 use corpuscle_observe::{Chart, Check, Curves, theory};
 use corpuscle_scene::{Body, Camera, Colour, Colouring, Label, Scene};
 
@@ -281,16 +282,15 @@ impl Simulation for Engines {
                 let reference = "straight flight, uniform impact parameters, relative speeds in equilibrium: exact";
                 checks.push(share.check(name, chords::missed(STEPS[k]), reference));
             }
-            let henderson = "Henderson 1975, doi:10.1080/00268977500102511";
+            let virial = "ten virial coefficients, Clisby and McCoy 2006, doi:10.1007/s10955-005-8080-0, of a fixed number";
             let pressure = self.pairs.mean(|pair| pair.hard_compressibility(self.pairs.sampled()));
-            let expected = 1.0 + (theory::compressibility::<2>(self.set.packing) - 1.0) * (1.0 - 1.0 / self.set.particles as f64);
-            checks.push(pressure.check("P V/(N k T), event-driven", expected, henderson));
+            let expected = hard_discs::liquid_of_few(self.set.packing, self.set.particles);
+            checks.push(pressure.check("P V/(N k T), event-driven", expected, virial));
             if self.set.steps_per_contact >= FINE && self.set.hardness >= HARD {
                 let diameter = self.set.effective_diameter();
-                let excess = theory::compressibility::<2>(self.set.packing * diameter * diameter) - 1.0;
-                let expected = 1.0 + excess * (1.0 - 1.0 / self.set.particles as f64);
+                let expected = hard_discs::liquid_of_few(self.set.packing * diameter * diameter, self.set.particles);
                 let pressure = self.pairs.mean(Pair::soft_compressibility);
-                let reference = "Henderson 1975 at the diameter of Barker and Henderson 1967, doi:10.1063/1.1701689";
+                let reference = "the same at the diameter of Barker and Henderson 1967, doi:10.1063/1.1701689";
                 checks.push(pressure.check("P V/(N k T), time-driven", expected, reference));
             }
         }

@@ -125,9 +125,12 @@ impl<const D: usize> Free<D> {
         if !periodic || count < 100 || packing >= 0.45 {
             return None;
         }
-        let source = if D == 2 { "Henderson 1975, hard disks" } else { "Carnahan and Starling 1969, hard spheres" };
-        // The pair sum of N particles has N - 1 partners each.
-        let finite = 1.0 + (theory::compressibility::<D>(packing) - 1.0) * (1.0 - 1.0 / count as f64);
+        let (finite, source) = if D == 2 {
+            (theory::hard_discs::liquid_of_few(packing, count), "ten virial coefficients, Clisby and McCoy 2006, of a fixed number")
+        } else {
+            let z = theory::compressibility::<D>(packing) + theory::finite_size_shift::<D>(packing, count);
+            (z, "Carnahan and Starling 1969, hard spheres, of a fixed number")
+        };
         Some(self.virial_pressure.compressibility().check("compressibility factor Z", finite, source))
     }
 

@@ -86,12 +86,29 @@ pub(super) fn show(ui: &mut Ui, chart: &Chart, run: u64, look: &Look) -> egui::R
     if !look.large {
         plot = plot.sense(egui::Sense::click()).allow_double_click_reset(false);
     }
+    for height in about_a_level(chart, y).into_iter().flatten() {
+        plot = plot.include_y(height);
+    }
     let response = plot.show(ui, |plot| {
         for (series, face) in chart.series.iter().zip(&faces) {
             draw(plot, series, *face, look, x, y);
         }
     });
     response.response
+}
+
+/// What has to be shown above and below, where all there is so far has one height: a theory without measurements, say. By itself
+/// the plot would make its axis as long as that of the time.
+fn about_a_level(chart: &Chart, y: fn(f64) -> f64) -> Option<[f64; 2]> {
+    let heights = chart.series.iter().flat_map(|series| {
+        let ends = errors(series).flat_map(|(_, value, error)| [value - error, value + error]);
+        series.y.iter().copied().chain(ends)
+    });
+    let shown = heights.map(y).filter(|height| height.is_finite());
+    let [least, most] = shown.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], y| [least.min(y), most.max(y)]);
+    let level = 0.5 * (least + most);
+    let room = if level == 0.0 { 1.0 } else { 0.5 * level.abs() };
+    (most - least <= 1e-9 * level.abs()).then_some([level - room, level + room])
 }
 
 /// How a series is drawn.
@@ -383,6 +400,20 @@ mod tests {
         assert!(short.contains(&[4321.0, 9.0]));
         // What was drawn stays where it was, but for the last stretch, which was not full.
         assert_eq!(short[..short.len() - 2], long[..short.len() - 2]);
+    }
+
+    #[test]
+    fn a_level_line_alone_has_an_axis_of_its_own_size() {
+        let axis = |name: &str| Axis::linear(name, "");
+        let of = |points: &[(f64, f64, f64)]| {
+            let theory = Series::new("theory", Style::Theory, [(0.0, 1.0), (1000.0, 1.0)]);
+            let measured = Series::with_errors("measured", Style::Points, points.to_vec());
+            about_a_level(&Chart::new("c", "", axis("x"), axis("y")).with(theory).with(measured), |y| y)
+        };
+        assert_eq!(of(&[]), Some([0.5, 1.5]));
+        assert_eq!(of(&[(500.0, 1.0, 0.0)]), Some([0.5, 1.5]));
+        assert_eq!(of(&[(500.0, 1.0, 0.1)]), None);
+        assert_eq!(about_a_level(&Chart::new("c", "", axis("x"), axis("y")), |y| y), None);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Below the stage: what the colours mean, how long things are, and how many there are.
 
 use corpuscle_render::Projection;
-use corpuscle_scene::{Colour, Colouring, Scene, viridis};
+use corpuscle_scene::{Colour, Colouring, Scene};
 use egui::{Align2, Color32, ComboBox, FontId, Painter, Pos2, Rect, TextWrapMode, Ui, UiBuilder, pos2, vec2};
 
 use crate::command::Command;
@@ -57,17 +57,18 @@ fn choice(ui: &mut Ui, model: &mut Model, seen: &Snapshot, band: Rect) -> f32 {
 /// What the colours mean.
 fn paint(painter: &Painter, room: Rect, scene: &Scene, theme: Theme, language: Language) {
     let colours = theme.colours();
-    let (left, y) = (room.left(), room.center().y);
+    let at = pos2(room.left(), room.center().y);
+    let scale = |name: &str, unit: &str, ends: [f64; 2]| {
+        scale(painter, at, &language.phrase(name), unit, ends, scene.colouring.map(), &colours);
+    };
     match &scene.colouring {
         Colouring::Uniform(_) => {}
         Colouring::Species(names) => kinds(painter, room, names, theme, language),
-        Colouring::Speed { most, unit } => scale(painter, left, y, &language.phrase("speed"), unit, [0.0, *most], &colours),
-        Colouring::Energy { most } => scale(painter, left, y, &language.phrase("kinetic energy"), "", [0.0, *most], &colours),
-        Colouring::Height { least, most, .. } => {
-            scale(painter, left, y, &language.phrase("height"), "", [*least, *most], &colours);
-        }
-        Colouring::Value { name, unit, least, most } => {
-            scale(painter, left, y, &language.phrase(name), unit, [*least, *most], &colours);
+        Colouring::Speed { most, unit } => scale("speed", unit, [0.0, *most]),
+        Colouring::Energy { most } => scale("kinetic energy", "", [0.0, *most]),
+        Colouring::Height { least, most, .. } => scale("height", "", [*least, *most]),
+        Colouring::Value { name, unit, least, most } | Colouring::Angle { name, unit, least, most } => {
+            scale(name, unit, [*least, *most]);
         }
     }
 }
@@ -98,7 +99,15 @@ fn kinds(painter: &Painter, room: Rect, names: &[String], theme: Theme, language
 }
 
 /// A bar of colours with its ends written beside it.
-fn scale(painter: &Painter, left: f32, y: f32, name: &str, unit: &str, ends: [f64; 2], colours: &crate::theme::Colours) {
+fn scale(
+    painter: &Painter,
+    Pos2 { x: left, y }: Pos2,
+    name: &str,
+    unit: &str,
+    ends: [f64; 2],
+    map: fn(f64) -> [f64; 3],
+    colours: &crate::theme::Colours,
+) {
     let word = |left: f32, text: &str, colour| {
         painter.text(pos2(left, y), Align2::LEFT_CENTER, text, FontId::proportional(SIZE), colour).right()
     };
@@ -108,7 +117,7 @@ fn scale(painter: &Painter, left: f32, y: f32, name: &str, unit: &str, ends: [f6
     let steps = 48;
     let width = 120.0 / steps as f32;
     for step in 0..steps {
-        let [r, g, b] = viridis((f64::from(step) + 0.5) / f64::from(steps)).map(|c| (255.0 * c).round() as u8);
+        let [r, g, b] = map((f64::from(step) + 0.5) / f64::from(steps)).map(|c| (255.0 * c).round() as u8);
         let from = left + step as f32 * width;
         let rect = Rect::from_min_size(pos2(from, y - 5.0), vec2(width + 0.5, 10.0));
         painter.rect_filled(rect, 0.0, Color32::from_rgb(r, g, b));

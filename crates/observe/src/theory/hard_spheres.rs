@@ -45,6 +45,25 @@ pub fn reduced_compressibility<const D: usize>(packing: f64) -> f64 {
     }
 }
 
+/// What the `compressibility` factor of `count` particles in a periodic box has more than that of infinitely many: about
+/// `(eta/2N) d ln chi_T/d eta`, negative, to order `1/N`.
+///
+/// A fixed number does not fluctuate. With `Xi = sum_N z^N Q_N = exp(P V/kT)`, free of surface terms in a periodic box, and
+/// normal fluctuations of variance `N chi_T`, the free energy of exactly `N` is `F_N/kT = F/kT + (1/2) ln chi_T`; its slope is the
+/// pressure. Thin gases have the `1 - 1/N` of their `N - 1` partners, `-2^(D-1) eta/N`; dense ones less than half that share of `Z - 1`.
+/// It is as much for the virial of the collisions at fixed energy `E` and momentum, with `kT = 2 E/(D(N - 1))`: places are as in
+/// equilibrium, and the mean square of relative velocities is `2 D kT/m` exactly. (Finite sizes in the plane: Kolafa and
+/// Rottner 2006, doi:10.1080/00268970600967963.)
+pub fn finite_size_shift<const D: usize>(packing: f64, count: usize) -> f64 {
+    let (eta, free) = (packing, 1.0 - packing);
+    // The polynomial of `reduced_compressibility` and its slope.
+    let (power, polynomial, slope) = match const { two_or_three::<D>() } {
+        2 => (3.0, 1.0 + eta + 0.375 * eta * eta - 0.125 * eta.powi(3), 1.0 + 0.75 * eta - 0.375 * eta * eta),
+        _ => (4.0, (1.0 + 2.0 * eta).powi(2) - eta.powi(3) * (4.0 - eta), 4.0 + 8.0 * eta - 12.0 * eta * eta + 4.0 * eta.powi(3)),
+    };
+    -0.5 * eta / count as f64 * (power / free + slope / polynomial)
+}
+
 /// Excess chemical potential over `k T` of the fluid, `int_0^eta (Z - 1)/eta d eta + Z - 1`: by the equations of state of
 /// [`compressibility`], `-(7/8) ln(1 - eta) + (9/8) eta/(1 - eta) + Z - 1` in 2-D and
 /// `(4 eta - 3 eta^2)/(1 - eta)^2 + Z - 1` in 3-D.
@@ -155,6 +174,20 @@ mod tests {
             assert!((reduced_compressibility::<2>(eta) * slope2 - 1.0).abs() < 1e-7, "{eta}");
             assert!((reduced_compressibility::<3>(eta) * slope3 - 1.0).abs() < 1e-7, "{eta}");
         }
+    }
+
+    /// Central differences of `ln chi_T`; and the second virial coefficient of `N` particles, which have `N - 1` partners each.
+    #[test]
+    fn a_few_particles_have_the_pressure_of_a_fixed_number() {
+        let h = 1e-5;
+        for eta in [0.01, 0.1, 0.3, 0.45] {
+            let flat = (reduced_compressibility::<2>(eta + h) / reduced_compressibility::<2>(eta - h)).ln() / (2.0 * h);
+            let round = (reduced_compressibility::<3>(eta + h) / reduced_compressibility::<3>(eta - h)).ln() / (2.0 * h);
+            assert!((finite_size_shift::<2>(eta, 50) / (0.01 * eta * flat) - 1.0).abs() < 1e-7, "{eta}");
+            assert!((finite_size_shift::<3>(eta, 50) / (0.01 * eta * round) - 1.0).abs() < 1e-7, "{eta}");
+        }
+        assert!((finite_size_shift::<2>(1e-6, 10) / -2e-7 - 1.0).abs() < 1e-5);
+        assert!((finite_size_shift::<3>(1e-6, 10) / -4e-7 - 1.0).abs() < 1e-5);
     }
 
     /// Gibbs and Duhem: `d mu = dP / n`, so that the slope of the whole chemical potential is `1 / (eta chi_T)`.

@@ -1,6 +1,6 @@
 //! Discs in the plane and spheres in space.
 
-use corpuscle_scene::{Body, Colour, Colouring, Scene, viridis};
+use corpuscle_scene::{Body, Colour, Colouring, Scene};
 
 use super::{SPACE, Space};
 use crate::RenderError;
@@ -181,10 +181,10 @@ fn colour(program: &Program, colouring: &Colouring, space: &Space) {
         // One colour for all: whatever the shade is, its remainder is 0.
         Colouring::Uniform(colour) => (vec![plain(*colour)], None, 0),
         Colouring::Species(_) => ((0..8).map(|index| plain(Colour::Accent(index))).collect(), None, 0),
-        Colouring::Speed { most, .. } => (viridis_knots(), Some([0.0, *most]), 1),
-        Colouring::Energy { most } => (viridis_knots(), Some([0.0, *most]), 2),
-        Colouring::Height { least, most, .. } => (viridis_knots(), Some([*least, *most]), 3),
-        Colouring::Value { least, most, .. } => (viridis_knots(), Some([*least, *most]), 0),
+        Colouring::Speed { most, .. } => (knots(colouring), Some([0.0, *most]), 1),
+        Colouring::Energy { most } => (knots(colouring), Some([0.0, *most]), 2),
+        Colouring::Height { least, most, .. } => (knots(colouring), Some([*least, *most]), 3),
+        Colouring::Value { least, most, .. } | Colouring::Angle { least, most, .. } => (knots(colouring), Some([*least, *most]), 0),
     };
     program.set("u_map", &map[..]);
     program.set("u_colours", map.len() as i32);
@@ -200,6 +200,6 @@ fn colour(program: &Program, colouring: &Colouring, space: &Space) {
     }
 }
 
-fn viridis_knots() -> Vec<[f32; 3]> {
-    (0..=10).map(|knot| viridis(f64::from(knot) / 10.0).map(|c| c as f32)).collect()
+fn knots(colouring: &Colouring) -> Vec<[f32; 3]> {
+    (0..=10).map(|knot| colouring.map()(f64::from(knot) / 10.0).map(|c| c as f32)).collect()
 }

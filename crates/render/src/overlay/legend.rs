@@ -1,6 +1,6 @@
 //! What the colours mean.
 
-use corpuscle_scene::{Colour, Colouring, Palette, viridis};
+use corpuscle_scene::{Colour, Colouring, Palette};
 
 use super::Measures;
 use super::font::Typeface;
@@ -13,24 +13,27 @@ pub(crate) enum Legend {
     /// A swatch and a name each.
     Species(Vec<String>),
     /// A bar of colours with ticks: values and their texts.
-    Scale { heading: String, least: f64, most: f64, ticks: Vec<(f64, String)> },
+    Scale { heading: String, least: f64, most: f64, ticks: Vec<(f64, String)>, map: fn(f64) -> [f64; 3] },
 }
 
 impl Legend {
     /// None where all bodies look alike.
     pub(crate) fn new(colouring: &Colouring) -> Option<Self> {
+        let scale = |name: &str, unit: &str, least, most| Some(Self::scale(name, unit, [least, most], colouring.map()));
         match colouring {
             Colouring::Uniform(_) => None,
             Colouring::Species(names) if names.is_empty() => None,
             Colouring::Species(names) => Some(Self::Species(names.clone())),
-            Colouring::Speed { most, unit } => Some(Self::scale("speed", unit, 0.0, *most)),
-            Colouring::Energy { most } => Some(Self::scale("kinetic energy", "", 0.0, *most)),
-            Colouring::Height { least, most, .. } => Some(Self::scale("height", "", *least, *most)),
-            Colouring::Value { name, unit, least, most } => Some(Self::scale(name, unit, *least, *most)),
+            Colouring::Speed { most, unit } => scale("speed", unit, 0.0, *most),
+            Colouring::Energy { most } => scale("kinetic energy", "", 0.0, *most),
+            Colouring::Height { least, most, .. } => scale("height", "", *least, *most),
+            Colouring::Value { name, unit, least, most } | Colouring::Angle { name, unit, least, most } => {
+                scale(name, unit, *least, *most)
+            }
         }
     }
 
-    fn scale(name: &str, unit: &str, least: f64, most: f64) -> Self {
+    fn scale(name: &str, unit: &str, [least, most]: [f64; 2], map: fn(f64) -> [f64; 3]) -> Self {
         let exponent = common_exponent(least.abs().max(most.abs()));
         let values = ticks(least, most);
         let power = 10f64.powi(exponent);
@@ -42,7 +45,7 @@ impl Legend {
             (_, unit) => format!(" / {} {unit}", power_text(exponent)),
         };
         let ticks = values.into_iter().map(|value| (value, fixed(value / power, places))).collect();
-        Self::Scale { heading: format!("{name}{unit}"), least, most, ticks }
+        Self::Scale { heading: format!("{name}{unit}"), least, most, ticks, map }
     }
 
     /// Width and height in a column beside the stage.
@@ -101,7 +104,7 @@ impl Legend {
                     sheet.text(&rest, m.small(), [x, y + m.points(15.0)], Align::Left, quiet(palette));
                 }
             }
-            Self::Scale { heading, least, most, ticks } => {
+            Self::Scale { heading, least, most, ticks, map } => {
                 let (ink, small) = (palette.rgba(Colour::Ink), m.small());
                 sheet.text(heading, small, [area.left, area.top + m.points(12.0)], Align::Left, ink);
                 let top = (area.top + m.points(26.0)).round();
@@ -110,7 +113,7 @@ impl Legend {
                 for row in 0..height as usize {
                     let part = 1.0 - (row as f64 + 0.5) / height;
                     let line = Rectangle { left: area.left, top: top + row as f64, width, height: 1.0 };
-                    sheet.fill(line, ramp(part));
+                    sheet.fill(line, ramp(*map, part));
                 }
                 for (value, text) in ticks {
                     let y = top + height * (1.0 - part_of(*value, *least, *most));
@@ -134,7 +137,7 @@ impl Legend {
                     }
                 }
             }
-            Self::Scale { heading, least, most, ticks } => {
+            Self::Scale { heading, least, most, ticks, map } => {
                 let (ink, small) = (palette.rgba(Colour::Ink), m.small());
                 sheet.text(heading, small, [area.left, area.top + m.points(10.0)], Align::Left, ink);
                 let (top, height) = (area.top + m.points(17.0), m.points(12.0));
@@ -142,7 +145,7 @@ impl Legend {
                 for column in 0..width as usize {
                     let part = (column as f64 + 0.5) / width;
                     let line = Rectangle { left: area.left + column as f64, top, width: 1.0, height };
-                    sheet.fill(line, ramp(part));
+                    sheet.fill(line, ramp(*map, part));
                 }
                 for (value, text) in ticks {
                     let x = area.left + width * part_of(*value, *least, *most);
@@ -161,8 +164,8 @@ pub(crate) fn quiet(palette: Palette) -> Rgba {
     [r, g, b, 0.66]
 }
 
-fn ramp(part: f64) -> Rgba {
-    let [r, g, b] = viridis(part).map(|c| c as f32);
+fn ramp(map: fn(f64) -> [f64; 3], part: f64) -> Rgba {
+    let [r, g, b] = map(part).map(|c| c as f32);
     [r, g, b, 1.0]
 }
 

@@ -289,9 +289,18 @@ impl<const D: usize> Study<D> for Isobars {
         let point = &self.points[0];
         let (mean, deviation) = (point.expected.0, point.expected.1.sqrt());
         let (least, most) = (mean - 4.0 * deviation, mean + 4.0 * deviation);
-        let mut histogram = Histogram::new(least / mean, most / mean, 24);
-        Self::of(gases, 0).flat_map(|gas| &gas.lengths).for_each(|&length| histogram.add(length / mean));
-        let bars = histogram.densities().into_iter().map(|(x, density)| (x, density.mean, density.standard_error));
+        // Samples of one gas are not independent of each other: the error is the scatter of the gases.
+        let densities: Vec<Vec<(f64, Estimate)>> = Self::of(gases, 0)
+            .map(|gas| {
+                let mut histogram = Histogram::new(least / mean, most / mean, 24);
+                gas.lengths.iter().for_each(|&length| histogram.add(length / mean));
+                histogram.densities()
+            })
+            .collect();
+        let bars = (0..24).map(|bin| {
+            let density = Estimate::from_replicas(&densities.iter().map(|gas| gas[bin].1.mean).collect::<Vec<_>>());
+            (densities[0][bin].0, density.mean, density.standard_error)
+        });
         let density = |x: f64| mean * libm::exp(point.ln_weight::<D>(x * mean, self.load) - point.ln_norm);
         vec![
             self.of_law(gases, Law::Charles),

@@ -77,12 +77,9 @@ impl Set {
         TAU / self.length()
     }
 
-    /// Collisions of a disc per time, at speeds that a fixed energy bounds.
+    /// Collisions of a disc per time.
     pub(super) fn collision_rate(&self) -> f64 {
-        let rate = theory::collision_rate::<2>(self.particles as f64 / self.boundary.volume(), 1.0, self.temperature, 1.0);
-        // The mean relative speed of a closed system of f freedoms is lower by (f/2)^(1/2) Gamma(f/2)/Gamma(f/2 + 1/2).
-        let half = self.particles as f64 - 1.0;
-        rate * libm::exp(0.5 * libm::log(half) + libm::lgamma(half) - libm::lgamma(half + 0.5))
+        theory::hard_discs::collision_rate_of_few(self.packing, self.particles) * self.temperature.sqrt()
     }
 
     /// The wave that is `j` times as short as the tube, by linear hydrodynamics.
@@ -197,16 +194,15 @@ impl Tube {
         self.engines.iter().zip(self.energies).map(|(engine, energy)| (engine, Some(energy)))
     }
 
-    /// `P V/(N k T) = 1 + sum J s/(D N k T t)` before the push. In a box of `N` discs each has `N - 1` others to meet, so that the
-    /// second term is low by `1 - 1/N`; with `k T = E/(N - 1)` both corrections cancel.
+    /// `P V/(N k T) = 1 + sum J s/(D N k T t)` before the push, with `k T = E/(N - 1)`, as the momentum of all is fixed.
     pub(super) fn compressibility(&self) -> f64 {
-        1.0 + self.still.virial / (2.0 * self.still.energy * self.still.time)
+        let count = self.engines[0].particle_count() as f64;
+        1.0 + self.still.virial / (2.0 * self.still.energy * self.still.time) * (count - 1.0) / count
     }
 
-    /// Collisions of a disc per time before the push, with `N` others to meet in place of `N - 1`.
+    /// Collisions of a disc per time before the push.
     pub(super) fn collision_rate(&self) -> f64 {
-        let count = self.engines[0].particle_count() as f64;
-        2.0 * self.still.collisions / ((count - 1.0) * self.still.time)
+        2.0 * self.still.collisions / (self.engines[0].particle_count() as f64 * self.still.time)
     }
 }
 
