@@ -4,6 +4,7 @@
 
 use corpuscle_experiments::{Experiment, Kind, Parameter, REGISTRY, Settings, Simulation, Value};
 use corpuscle_scene::Scene;
+use rayon::prelude::*;
 
 /// Part of the run that is compared.
 fn part(experiment: &str) -> f64 {
@@ -73,37 +74,41 @@ fn matters(experiment: &Experiment, settings: &Settings, parameter: &Parameter, 
     })
 }
 
+/// What is said wrongly of the parameters in a situation, and of how many anything is said.
+fn judge(experiment: &Experiment, choice: &Parameter, situation: &str) -> (Vec<String>, usize) {
+    let quick = QUICK.iter().find(|(name, _)| *name == experiment.name).map_or(&[][..], |(_, values)| values);
+    let mut settings = Settings::new(experiment.parameters, 3);
+    for (key, text) in quick {
+        settings.set_text(key, text).unwrap();
+    }
+    settings.set_text(choice.name, situation).unwrap();
+    if (experiment.name, choice.name) == ("wave", "start") {
+        settings.set_text("density_ratio", "1").unwrap();
+    }
+    let plain = run(experiment, &settings, None);
+    let plain = plain.unwrap_or_else(|key| panic!("{} with {situation}: {key}", experiment.name));
+    let judge = |other: &Parameter| {
+        let declared = settings.idle_under(other.name).is_some();
+        let says = if declared { "matters after all" } else { "does not matter" };
+        let wrong = matters(experiment, &settings, other, &plain) == declared;
+        wrong.then(|| format!("{} {situation}: {} {says}", experiment.name, other.name))
+    };
+    (experiment.parameters.iter().filter_map(judge).collect(), experiment.parameters.len())
+}
+
 #[test]
 fn what_a_situation_calls_unused_is_unused_and_nothing_else() {
-    let mut wrong = vec![];
-    let mut compared = 0;
+    let mut situations = vec![];
     for experiment in REGISTRY {
-        let quick = QUICK.iter().find(|(name, _)| *name == experiment.name).map_or(&[][..], |(_, values)| values);
-        for parameter in experiment.parameters {
-            let Kind::Situation { options, .. } = parameter.kind else { continue };
-            for situation in options {
-                let mut settings = Settings::new(experiment.parameters, 3);
-                for (key, text) in quick {
-                    settings.set_text(key, text).unwrap();
-                }
-                settings.set_text(parameter.name, situation.name).unwrap();
-                if (experiment.name, parameter.name) == ("wave", "start") {
-                    settings.set_text("density_ratio", "1").unwrap();
-                }
-                println!("{} {}", experiment.name, situation.name);
-                let plain = run(experiment, &settings, None);
-                let plain = plain.unwrap_or_else(|key| panic!("{} with {}: {key}", experiment.name, situation.name));
-                for other in experiment.parameters {
-                    let declared = settings.idle_under(other.name).is_some();
-                    compared += 1;
-                    if matters(experiment, &settings, other, &plain) == declared {
-                        let says = if declared { "matters after all" } else { "does not matter" };
-                        wrong.push(format!("{} {}: {} {says}", experiment.name, situation.name, other.name));
-                    }
-                }
+        for choice in experiment.parameters {
+            if let Kind::Situation { options, .. } = choice.kind {
+                situations.extend(options.iter().map(|situation| (experiment, choice, situation.name)));
             }
         }
     }
-    assert!(compared > 500, "{compared}");
+    let judged: Vec<_> =
+        situations.par_iter().map(|(experiment, choice, situation)| judge(experiment, choice, situation)).collect();
+    assert!(judged.iter().map(|(_, compared)| compared).sum::<usize>() > 500);
+    let wrong: Vec<String> = judged.into_iter().flat_map(|(wrong, _)| wrong).collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
