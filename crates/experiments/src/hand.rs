@@ -9,8 +9,9 @@ use corpuscle_core::{Axis, Boundary, Engine, Face, Failure, Invalid, Particles, 
 use corpuscle_event::EventDriven;
 use corpuscle_time::TimeDriven;
 
-use crate::Action;
+use crate::probe::{self, Region};
 use crate::tally::Tally;
+use crate::{Action, Probed};
 
 /// Stream of the random numbers that disturb velocities.
 const DISTURBANCE: u64 = 0x6861_6e64;
@@ -56,6 +57,19 @@ impl<const D: usize> InHand<D> {
         let outcome = on_number(&mut copy.engine, action);
         *held = Some(copy);
         outcome
+    }
+
+    /// Lays a probe, or takes it up. It watches a copy, made when there is none yet, which goes on as what is measured does.
+    pub(crate) fn lay(held: &mut Option<Self>, engine: &EventDriven<D>, corners: Option<[[f64; 2]; 2]>) {
+        if held.is_some() || corners.is_some() {
+            let copy = held.get_or_insert_with(|| Self { engine: engine.clone(), tally: Tally::default() });
+            copy.tally.lay(corners.and_then(|corners| Region::lay(&copy.engine, corners)));
+        }
+    }
+
+    /// What the probe has seen, if one was laid.
+    pub(crate) fn probed(held: Option<&Self>) -> Option<Probed> {
+        held.and_then(|copy| probe::read(&copy.engine, &copy.tally))
     }
 
     /// Advances to a time on the engine's clock.

@@ -51,7 +51,7 @@ fn clearance(scene: &Scene) -> f64 {
 }
 
 /// Experiments of hard bodies that meet each other, whose pictures must not show an overlap.
-const HARD: [&str; 7] = ["brownian", "entropy", "ideal-gas", "atmosphere", "granular", "sound", "diffusion"];
+const HARD: [&str; 8] = ["brownian", "entropy", "ideal-gas", "atmosphere", "granular", "sound", "diffusion", "hard-disk-melting"];
 
 #[test]
 fn hands_leave_every_experiment_legal_and_its_measurement_alone() {
@@ -73,6 +73,7 @@ fn hands_leave_every_experiment_legal_and_its_measurement_alone() {
             Action::Reverse,
             Action::Disturb { strength: 0.1, seed: 5 },
         ];
+        touched.probe(Some([[-1e9; 2], [1e9; 2]]));
         let mut done = 0;
         for action in actions {
             let refused = touched.refusal(action);
@@ -94,6 +95,10 @@ fn hands_leave_every_experiment_legal_and_its_measurement_alone() {
         }
         if done > 0 {
             taken.push((name, done));
+        }
+        if HARD.contains(&name) {
+            let probed = touched.probed();
+            assert!(probed.is_some_and(|probed| probed.contacts > 0 && probed.kinetic.is_some()), "{name}: {probed:?}");
         }
         left.advance(at).unwrap();
         // A reversal of the wave is measured, and so is the room of the entropy.

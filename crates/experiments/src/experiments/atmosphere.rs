@@ -22,7 +22,7 @@ use crate::gas::{self, Species};
 use crate::hand::{self, InHand};
 use crate::replicas::{Member, Replicas, Watch, energy_check, honesty};
 use crate::tally::Tally;
-use crate::{Action, Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, peek};
+use crate::{Action, Experiment, Frame, Honesty, Kind, Parameter, Probed, Settings, Simulation, drawing, ensemble, peek};
 use theory::Profile;
 
 /// The registry's entry.
@@ -467,6 +467,14 @@ impl<const D: usize> Simulation for Atmosphere<D> {
         let column = &self.columns.members[0];
         peek::next_contact(InHand::on_show(self.in_hand.as_ref(), &column.engine), 1.5 * self.duration)
             .map(|time| time - column.started)
+    }
+
+    fn probe(&mut self, corners: Option<[[f64; 2]; 2]>) {
+        InHand::lay(&mut self.in_hand, &self.columns.members[0].engine, corners);
+    }
+
+    fn probed(&self) -> Option<Probed> {
+        InHand::probed(self.in_hand.as_ref())
     }
 
     fn refusal(&self, action: Action) -> Option<&'static str> {

@@ -24,7 +24,7 @@ use crate::gas;
 use crate::hand::{self, InHand};
 use crate::replicas::{Replicas, energy_check, honesty};
 use crate::tally::Tally;
-use crate::{Action, Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, peek};
+use crate::{Action, Experiment, Frame, Honesty, Kind, Parameter, Probed, Settings, Simulation, drawing, ensemble, peek};
 use vessel::{BINS, Set, Vessel};
 
 /// The registry's entry.
@@ -320,6 +320,14 @@ impl<const D: usize> Simulation for Diffusion<D> {
         let vessel = &self.vessels.members[0];
         peek::next_contact(InHand::on_show(self.in_hand.as_ref(), &vessel.engine), 1.5 * self.duration)
             .map(|time| time - vessel.started)
+    }
+
+    fn probe(&mut self, corners: Option<[[f64; 2]; 2]>) {
+        InHand::lay(&mut self.in_hand, &self.vessels.members[0].engine, corners);
+    }
+
+    fn probed(&self) -> Option<Probed> {
+        InHand::probed(self.in_hand.as_ref())
     }
 
     fn refusal(&self, action: Action) -> Option<&'static str> {

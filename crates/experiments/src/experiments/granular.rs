@@ -23,7 +23,7 @@ use crate::gas::{self, Species};
 use crate::hand::{self, InHand};
 use crate::replicas::{Member, Replicas, honesty};
 use crate::tally::Tally;
-use crate::{Action, Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, peek};
+use crate::{Action, Experiment, Frame, Honesty, Kind, Parameter, Probed, Settings, Simulation, drawing, ensemble, peek};
 
 /// The registry's entry.
 pub(crate) static EXPERIMENT: Experiment = Experiment {
@@ -417,6 +417,14 @@ impl<const D: usize> Simulation for Granular<D> {
     fn next_event(&self) -> Option<f64> {
         let engine = InHand::on_show(self.in_hand.as_ref(), &self.crowd.members[0].grains.engine);
         peek::next_contact(engine, 1.5 * self.duration)
+    }
+
+    fn probe(&mut self, corners: Option<[[f64; 2]; 2]>) {
+        InHand::lay(&mut self.in_hand, &self.crowd.members[0].grains.engine, corners);
+    }
+
+    fn probed(&self) -> Option<Probed> {
+        InHand::probed(self.in_hand.as_ref())
     }
 
     fn refusal(&self, action: Action) -> Option<&'static str> {

@@ -23,9 +23,10 @@ use corpuscle_observe::theory::hard_discs;
 use corpuscle_observe::{Chart, Check, Estimate};
 use corpuscle_scene::{Colouring, Scene};
 
+use crate::hand::{self, InHand};
 use crate::replicas::{Replicas, energy_check, honesty};
 use crate::tally::Tally;
-use crate::{Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, Table, drawing, ensemble, peek};
+use crate::{Action, Experiment, Frame, Honesty, Kind, Parameter, Probed, Settings, Simulation, Table, drawing, ensemble, peek};
 use sheet::{DENSEST_GROWN, Job, PERIOD, Sheet, Start};
 
 /// The registry's entry.
@@ -118,9 +119,10 @@ struct Melting {
     duration: f64,
     shown: Replicas<Sheet>,
     sheets: Replicas<Sheet>,
+    in_hand: Option<InHand<2>>,
 }
 
-resume!(Melting { values: [], parts: [shown, sheets], set_up: [packings, count, duration] });
+resume!(Melting { values: [], parts: [shown, sheets], set_up: [packings, count, duration, in_hand] });
 
 impl Melting {
     fn new(settings: &Settings) -> Result<Self, Invalid> {
@@ -167,6 +169,7 @@ impl Melting {
             duration: ((settings.real("duration") / PERIOD).ceil() + 0.5) * PERIOD,
             shown: Replicas::new(PERIOD, vec![Sheet::new(&shown)?]),
             sheets: Replicas::new(PERIOD, ensemble::build(&jobs, Sheet::new)?),
+            in_hand: None,
         })
     }
 
@@ -218,14 +221,16 @@ impl Simulation for Melting {
 
     fn advance(&mut self, to: f64) -> Result<(), Failure> {
         self.sheets.advance(to)?;
-        self.shown.advance(to)
+        self.shown.advance(to)?;
+        InHand::advance_any(&mut self.in_hand, self.shown.members[0].started + to)
     }
 
     fn draw(&self, scene: &mut Scene) {
         scene.clear();
         let sheet = &self.shown.members[0];
-        let discs = order::of_discs(&sheet.engine);
-        drawing::add_event_driven(scene, &sheet.engine, &Tally::default(), sheet.started, |i| discs[i].direction());
+        let engine = InHand::on_show(self.in_hand.as_ref(), &sheet.engine);
+        let discs = order::of_discs(engine);
+        drawing::add_event_driven(scene, engine, &Tally::default(), sheet.started, |i| discs[i].direction());
         scene.colouring =
             Colouring::Angle { name: "direction of the six neighbours".into(), unit: "°".into(), least: -30.0, most: 30.0 };
         scene.title = EXPERIMENT.title.into();
@@ -311,6 +316,23 @@ impl Simulation for Melting {
 
     fn next_event(&self) -> Option<f64> {
         let sheet = &self.shown.members[0];
-        peek::next_contact(&sheet.engine, 1.5 * self.duration).map(|time| time - sheet.started)
+        peek::next_contact(InHand::on_show(self.in_hand.as_ref(), &sheet.engine), 1.5 * self.duration)
+            .map(|time| time - sheet.started)
+    }
+
+    fn probe(&mut self, corners: Option<[[f64; 2]; 2]>) {
+        InHand::lay(&mut self.in_hand, &self.shown.members[0].engine, corners);
+    }
+
+    fn probed(&self) -> Option<Probed> {
+        InHand::probed(self.in_hand.as_ref())
+    }
+
+    fn refusal(&self, action: Action) -> Option<&'static str> {
+        hand::wanting_of_number(&self.shown.members[0].engine, action)
+    }
+
+    fn act(&mut self, action: Action) -> Result<(), Invalid> {
+        InHand::act(&mut self.in_hand, &self.shown.members[0].engine, &Tally::default(), action)
     }
 }

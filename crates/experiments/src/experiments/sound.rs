@@ -23,7 +23,7 @@ use corpuscle_scene::{Camera, Colouring, Scene};
 use crate::hand::{self, InHand};
 use crate::replicas::{Replicas, energy_check, honesty};
 use crate::tally::Tally;
-use crate::{Action, Experiment, Frame, Honesty, Kind, Parameter, Settings, Simulation, drawing, ensemble, peek};
+use crate::{Action, Experiment, Frame, Honesty, Kind, Parameter, Probed, Settings, Simulation, drawing, ensemble, peek};
 use tube::{BINS, Set, Tube};
 
 /// The registry's entry.
@@ -298,6 +298,14 @@ impl Simulation for Sound {
         let tube = &self.tubes.members[0];
         peek::next_contact(InHand::on_show(self.in_hand.as_ref(), tube.engine()), 1.5 * self.duration)
             .map(|time| time - tube.started())
+    }
+
+    fn probe(&mut self, corners: Option<[[f64; 2]; 2]>) {
+        InHand::lay(&mut self.in_hand, self.tubes.members[0].engine(), corners);
+    }
+
+    fn probed(&self) -> Option<Probed> {
+        InHand::probed(self.in_hand.as_ref())
     }
 
     fn refusal(&self, action: Action) -> Option<&'static str> {
