@@ -99,6 +99,12 @@ impl Instructions {
         self != Self::PLAIN
     }
 
+    /// Whether there are vectors of 512 bits: AVX-512.
+    #[inline]
+    pub fn has_avx512(self) -> bool {
+        self != self.without_avx512()
+    }
+
     /// This one without vectors or masks of AVX-512: for kernels that gain nothing from them.
     #[inline]
     #[must_use]

@@ -4,6 +4,8 @@
 //! four, that costs more than half the speed. Every operation is that of IEEE 754, lane by lane: how it is done shows in no bit.
 #![allow(unsafe_code, reason = "vector instructions; measured in docs/performance.md")]
 
+pub(crate) mod eight;
+
 use corpuscle_core::instructions::{Instructions, Kernel};
 
 /// How many numbers.

@@ -1,13 +1,10 @@
-//! What pulls at the particles of a lattice, four numbers at a time, and what is done with it.
+//! What pulls at the particles of a lattice, eight numbers at a time, and what is done with it.
 
 use corpuscle_core::Vector;
 use corpuscle_core::instructions::prefetch;
 
-use crate::lanes::{InLanes, LANES, Lanes};
+use crate::lanes::eight::{Eight, InEights, LANES};
 use crate::motion::Moves;
-
-/// Numbers of a line of a cache, and vectors.
-const LINE: usize = 8;
 
 /// `a = (sum_n k_n (r_n - r)) / m`, number by number: whatever the dimension, neighbours are as far apart. The sum begins with the
 /// first neighbour.
@@ -28,30 +25,30 @@ pub(super) trait Sink {
     /// How many it takes.
     fn len(&self) -> usize;
     /// Group `g` of them, and where the particles are; `doubts` are zero at first.
-    fn take<V: Lanes>(&mut self, g: usize, r: V, a: V, doubts: &mut [V; 2]);
+    fn take<V: Eight>(&mut self, g: usize, r: V, a: V, doubts: &mut [V; 2]);
     /// One of those after the groups, by its number.
     fn take_one(&mut self, n: usize, r: f64, a: f64);
     /// After the last.
     fn finish(self, doubts: [[f64; LANES]; 2]) -> Self::Output;
 }
 
-impl<S: Sink, const N: usize> InLanes for Gather<'_, S, N> {
+impl<S: Sink, const N: usize> InEights for Gather<'_, S, N> {
     type Output = S::Output;
 
     #[inline(always)]
-    fn run<V: Lanes>(self) -> S::Output {
+    fn run<V: Eight>(self) -> S::Output {
         let Self { stiffness, near, own, inverse_mass, mut sink } = self;
         let groups = own.len() / LANES;
-        let (mut stiff, mut fours) = ([V::splat(0.0); N], [&[][..]; N]);
+        let (mut stiff, mut eights) = ([V::splat(0.0); N], [&[][..]; N]);
         for n in 0..N {
-            (stiff[n], fours[n]) = (V::splat(stiffness[n]), &near[n].as_chunks::<LANES>().0[..groups]);
+            (stiff[n], eights[n]) = (V::splat(stiffness[n]), &near[n].as_chunks::<LANES>().0[..groups]);
         }
-        let (own_fours, inverse_masses) = (&own.as_chunks::<LANES>().0[..groups], &inverse_mass.as_chunks::<LANES>().0[..groups]);
+        let (own_eights, inverse_masses) = (&own.as_chunks::<LANES>().0[..groups], &inverse_mass.as_chunks::<LANES>().0[..groups]);
         let mut doubts = [V::splat(0.0); 2];
         for g in 0..groups {
-            let (r, mut a) = (V::new(own_fours[g]), V::splat(0.0));
+            let (r, mut a) = (V::new(own_eights[g]), V::splat(0.0));
             for n in 0..N {
-                let pull = stiff[n].mul(V::new(fours[n][g]).sub(r));
+                let pull = stiff[n].mul(V::new(eights[n][g]).sub(r));
                 a = if n == 0 { pull } else { a.add(pull) };
             }
             sink.take(g, r, a.mul(V::new(inverse_masses[g])), &mut doubts);
@@ -79,7 +76,7 @@ impl Sink for Add<'_> {
     }
 
     #[inline(always)]
-    fn take<V: Lanes>(&mut self, g: usize, _: V, a: V, _: &mut [V; 2]) {
+    fn take<V: Eight>(&mut self, g: usize, _: V, a: V, _: &mut [V; 2]) {
         let sum = &mut self.0.as_chunks_mut::<LANES>().0[g];
         *sum = V::new(*sum).add(a).lanes();
     }
@@ -127,11 +124,9 @@ impl<const OWED: bool> Sink for Move<'_, OWED> {
     }
 
     #[inline(always)]
-    fn take<V: Lanes>(&mut self, g: usize, r: V, a: V, doubts: &mut [V; 2]) {
-        if g.is_multiple_of(LINE / LANES) {
-            prefetch(self.soon[0], LANES * g);
-            prefetch(self.soon[1], LANES * g);
-        }
+    fn take<V: Eight>(&mut self, g: usize, r: V, a: V, doubts: &mut [V; 2]) {
+        prefetch(self.soon[0], LANES * g);
+        prefetch(self.soon[1], LANES * g);
         let velocity = &mut self.velocity.as_chunks_mut::<LANES>().0[g];
         let mut v = V::new(*velocity);
         if OWED {

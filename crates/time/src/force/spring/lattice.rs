@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::Spring;
 use super::gather::{Add, Gather, Sink};
-use crate::lanes;
+use crate::lanes::eight;
 use crate::threads::{self, CHUNK};
 
 /// Particles handled together.
@@ -155,7 +155,7 @@ impl Lattice {
         let near = neighbours.map(|neighbour| components(place.at(neighbour.offset)));
         let stiffness = neighbours.map(|neighbour| neighbour.stiffness);
         let inverse_mass = &inverse_mass[..sink.len()];
-        lanes::run(self.instructions, Gather { stiffness, near, own: components(own), inverse_mass, sink })
+        eight::run(self.instructions, Gather { stiffness, near, own: components(own), inverse_mass, sink })
     }
 }
 
