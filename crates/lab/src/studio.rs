@@ -83,8 +83,7 @@ impl Studio {
     pub fn look(&mut self, simulation: &dyn Simulation) -> bool {
         let seen = &mut self.seen;
         if seen.look == 0 {
-            seen.start = simulation.time();
-            seen.end = self.model.scenario.duration.unwrap_or_else(|| simulation.end());
+            seen.begin(simulation, self.model.scenario.duration);
             seen.speed = seen.usual_speed();
         }
         seen.look += 1;
@@ -92,6 +91,7 @@ impl Studio {
         self.sight.set_paint(self.model.preferences.paint);
         self.sight.set_arrows(self.model.preferences.arrows);
         self.sight.look(simulation, &mut seen.scene);
+        seen.probed = simulation.probed();
         !seen.scene.trails.is_empty()
     }
 

@@ -108,18 +108,14 @@ impl Driver {
 
     /// Puts what there is to know of a simulation that has just started into the snapshot.
     fn begin(&mut self) {
-        let start = self.simulation.time();
-        let end = self.scenario.duration.unwrap_or_else(|| self.simulation.end());
+        self.seen.begin(self.simulation.as_ref(), self.scenario.duration);
         self.seen.run += 1;
         self.sight.begin();
         self.seen.scene = corpuscle_scene::Scene::default();
-        (self.seen.time, self.seen.start, self.seen.end) = (start, start, end.max(start));
         self.seen.speed = self.seen.usual_speed() * self.factor;
-        self.stride = (self.seen.end - start) / STRIDES;
+        self.stride = (self.seen.end - self.seen.start) / STRIDES;
         self.seen.travel = None;
         self.simulation.probe(self.probe);
-        let refused = |action: &Action| Some((action.name(), self.simulation.refusal(*action)?));
-        self.seen.refusals = Arc::new(Action::EXAMPLES.iter().filter_map(refused).collect());
         self.measure();
     }
 

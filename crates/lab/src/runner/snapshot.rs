@@ -103,6 +103,15 @@ impl Snapshot {
         self.refusals.iter().find(|(name, _)| *name == action.name()).map(|&(_, needs)| needs)
     }
 
+    /// Takes in what there is to know of a simulation that has just started, to be run for so long, or as long as it needs.
+    pub(crate) fn begin(&mut self, simulation: &dyn Simulation, duration: Option<f64>) {
+        let start = simulation.time();
+        let end = duration.unwrap_or_else(|| simulation.end());
+        (self.time, self.start, self.end) = (start, start, end.max(start));
+        let refused = |action: &Action| Some((action.name(), simulation.refusal(*action)?));
+        self.refusals = Arc::new(Action::EXAMPLES.iter().filter_map(refused).collect());
+    }
+
     /// Physical time a second of the viewer, unless told otherwise.
     pub(crate) fn usual_speed(&self) -> f64 {
         (self.end - self.start) / SECONDS
