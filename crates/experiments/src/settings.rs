@@ -29,18 +29,17 @@ impl Settings {
     }
 
     /// Finds the values that hold, situation by situation in the order of their declaration. A choice without influence settles
-    /// nothing, and an empty list leaves the values to the situation.
+    /// nothing, and an empty list leaves the values to the situation, if it has some.
     fn settle(&mut self) {
         self.values = self.parameters.iter().map(|parameter| (parameter.name, parameter.default())).collect();
         self.unused.clear();
-        let given = self.given.iter().filter(|(_, value)| **value != Value::List(vec![]));
-        self.values.extend(given.clone().map(|(&key, value)| (key, value.clone())));
+        self.values.extend(self.given.iter().map(|(&key, value)| (key, value.clone())));
         for parameter in self.parameters {
             let Kind::Situation { options, .. } = parameter.kind else { continue };
             let chosen = options.iter().find(|situation| situation.name == self.word(parameter.name));
             let Some(chosen) = chosen.filter(|_| !self.unused.contains_key(parameter.name)) else { continue };
             for &(key, text) in chosen.sets {
-                if given.clone().any(|(&known, _)| known == key) {
+                if self.given.get(key).is_some_and(|value| *value != Value::List(vec![])) {
                     continue;
                 }
                 // That declarations can be read is held by a test.
