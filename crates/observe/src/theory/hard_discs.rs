@@ -84,7 +84,7 @@ mod tests {
     use super::*;
     use crate::theory::{collision_rate, compressibility};
 
-    /// Its series is that of the virial coefficients, `B_k/B_2^(k-1)`, to the seventh digit, beyond which they are not known.
+    /// Its series is that of the virial coefficients, `B_k/B_2^(k-1)`, as they stand here; they are rounded to six or seven digits.
     #[test]
     fn the_approximant_has_the_known_virial_coefficients() {
         let known =
