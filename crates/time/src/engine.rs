@@ -332,7 +332,7 @@ impl<const D: usize> TimeDriven<D> {
     fn step_fixed(&mut self, dt: f64) -> Result<(), Failure> {
         let (start, end) = (self.steps as f64 * dt, (self.steps + 1) as f64 * dt);
         let (stepper, system) = (&mut self.stepper, &mut self.system);
-        if threads::are_worth_it(system.particles.len()) {
+        if threads::are_worth_it(system.particles.len()) && !system.is_patient() {
             threads::kept_awake(|| stepper.step(system, start, end, dt))?;
         } else {
             stepper.step(system, start, end, dt)?;

@@ -47,6 +47,8 @@ pub use yukawa::Yukawa;
 
 use corpuscle_core::{Boundary, Invalid, Particles, Vector};
 
+use crate::strider::Strider;
+
 /// A square of numbers, row by row.
 pub type Tensor<const D: usize> = [[f64; D]; D];
 
@@ -113,8 +115,9 @@ pub trait Force<const D: usize>: Send {
         None
     }
 
-    /// The springs, where the force is springs and nothing else; only then can particles be moved while accelerations are found.
-    fn springs(&self) -> Option<&Springs> {
+    /// What moves particles while it finds their accelerations, where the force can do that; asked of a force that is the only one.
+    #[doc(hidden)]
+    fn strider(&mut self) -> Option<&mut dyn Strider<D>> {
         None
     }
 

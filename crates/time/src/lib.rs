@@ -35,6 +35,7 @@ mod integrator;
 mod lanes;
 mod motion;
 mod neighbours;
+mod strider;
 mod system;
 mod threads;
 

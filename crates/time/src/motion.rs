@@ -115,10 +115,12 @@ pub(crate) struct Moves {
 
 /// A kick and a drift by accelerations that are found on the way.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Stride {
+pub struct Stride {
     pub(crate) moves: Moves,
     /// The time of the positions it leads to.
     pub(crate) end: f64,
+    /// Whether particles that left a periodic box come in again on the other side afterwards.
+    pub(crate) confined: bool,
 }
 
 /// `v += a owed` if anything is, `v += a kick`, then `r += v drift` for all; tells whether every `v` was finite before the second,
@@ -196,23 +198,28 @@ pub(crate) fn wrap_all<const D: usize>(boundary: &Boundary<D>, position: &mut [V
     }
 }
 
-/// The primary box: the least and the largest coordinate within, infinite along axes that are not periodic.
-struct Inside<const D: usize> {
-    least: [f64; D],
-    largest: [f64; D],
+/// The primary box: the least and the largest coordinate within, those of all numbers along axes that are not periodic.
+pub(crate) struct Inside<const D: usize> {
+    pub(crate) least: [f64; D],
+    pub(crate) largest: [f64; D],
 }
 
 impl<const D: usize> Inside<D> {
-    fn new(boundary: &Boundary<D>) -> Self {
+    pub(crate) fn new(boundary: &Boundary<D>) -> Self {
         let periodic = |k: usize| boundary.axes[k] == Axis::Periodic;
         Self {
-            least: std::array::from_fn(|k| if periodic(k) { boundary.lower[k] } else { f64::NEG_INFINITY }),
-            largest: std::array::from_fn(|k| if periodic(k) { boundary.upper[k].next_down() } else { f64::INFINITY }),
+            least: std::array::from_fn(|k| if periodic(k) { boundary.lower[k] } else { f64::MIN }),
+            largest: std::array::from_fn(|k| if periodic(k) { boundary.upper[k].next_down() } else { f64::MAX }),
         }
     }
 
+    /// All of space.
+    pub(crate) fn everywhere() -> Self {
+        Self { least: [f64::MIN; D], largest: [f64::MAX; D] }
+    }
+
     #[inline(always)]
-    fn is_outside(&self, k: usize, x: f64) -> bool {
+    pub(crate) fn is_outside(&self, k: usize, x: f64) -> bool {
         x < self.least[k] || self.largest[k] < x
     }
 }

@@ -4,17 +4,19 @@ mod blocks;
 mod rows;
 
 use corpuscle_core::{Axis, Boundary, Instructions, Vector};
-use rayon::prelude::*;
 
 use crate::image::NearestImage;
 use crate::lanes::{self, LANES};
-pub(crate) use blocks::{Blocks, column, norm_squared};
+use crate::threads;
+pub(crate) use blocks::{Blocks, Farthest, Moved, column, norm_squared};
 use blocks::{LargestMoves, take_over};
 pub(crate) use rows::{ALL, Image, NONE, Near, Rows};
 use rows::{Map, Prune, Search, rounded_up};
 
-/// Entries of a list from which more than one thread is worth waking: that takes as long as a few thousand of them.
-const WORTH_THREADS: usize = 50_000;
+/// Entries of a list from which more than one thread is worth waking for one evaluation: that takes as long as a few thousand of them.
+const WORTH_WAKING: usize = 50_000;
+/// Entries from which threads that are awake are worth sharing it.
+const WORTH_SHARING: usize = 4000;
 /// What the first list may hold a block.
 const GUESS: usize = 64;
 /// Shares a thread, where there is more than one: whoever is held up leaves some to the others.
@@ -41,8 +43,10 @@ pub struct Neighbours<const D: usize> {
     /// Pairs within the cutoff and the skin, in shares of [`share`](Self::share) blocks.
     pub(crate) shares: Vec<Rows>,
     share: usize,
+    /// Whether one evaluation is worth waking threads for.
+    pub(crate) is_large: bool,
     wide: Vec<Rows>,
-    pruned_at: Vec<[f64; D]>,
+    pub(crate) pruned_at: Vec<[f64; D]>,
     built_at: Vec<[f64; D]>,
     built_in: Option<([Axis; D], Vector<D>, Vector<D>)>,
     builds: u64,
@@ -61,6 +65,7 @@ impl<const D: usize> Neighbours<D> {
             blocks: Blocks::empty(),
             shares: vec![],
             share: 1,
+            is_large: false,
             wide: vec![],
             pruned_at: vec![],
             built_at: vec![],
@@ -94,19 +99,29 @@ impl<const D: usize> Neighbours<D> {
 
     /// Takes over the positions; makes the list anew where it no longer holds.
     pub fn update(&mut self, boundary: &Boundary<D>, position: &[Vector<D>]) {
-        self.uses += 1;
         if self.fits(boundary, position) {
-            if self.load(boundary, position) < self.skin {
+            let closer = self.load(boundary, position);
+            if self.keep_up(boundary, closer) {
                 return;
             }
-            let moved = self.moved(boundary, &self.built_at, &self.blocks);
-            if moved + self.skin <= self.wide_skin {
-                self.prune(boundary);
-                return;
-            }
-            self.choose_skin(moved);
         }
         self.build(boundary, position);
+    }
+
+    /// Whether the list holds for the present positions, maybe after it has been pruned, if two particles have come nearer to each other
+    /// by `closer` since it was.
+    pub(crate) fn keep_up(&mut self, boundary: &Boundary<D>, closer: f64) -> bool {
+        self.uses += 1;
+        if closer < self.skin {
+            return true;
+        }
+        let moved = self.moved(boundary, &self.built_at, &self.blocks);
+        if moved + self.skin <= self.wide_skin {
+            self.prune(boundary);
+            return true;
+        }
+        self.choose_skin(moved);
+        false
     }
 
     /// The blocks with other positions, if the list still holds for them.
@@ -124,6 +139,11 @@ impl<const D: usize> Neighbours<D> {
         self.share * LANES
     }
 
+    /// Whether threads that are awake share the list.
+    pub(crate) fn are_shared(&self) -> bool {
+        self.shares.len() > 1
+    }
+
     fn fits(&self, boundary: &Boundary<D>, position: &[Vector<D>]) -> bool {
         self.built_in == Some((boundary.axes, boundary.lower, boundary.upper)) && self.blocks.place.len() == position.len()
     }
@@ -131,24 +151,21 @@ impl<const D: usize> Neighbours<D> {
     /// Takes over the positions; tells by how much two particles can have come nearer to each other since the list was made.
     fn load(&mut self, boundary: &Boundary<D>, position: &[Vector<D>]) -> f64 {
         let (instructions, image, places) = (self.instructions, NearestImage::new(boundary), self.places_a_share());
-        let one = |now: &mut [[f64; D]], before: &[[f64; D]], particle: &[u32]| {
+        let (now, before, particle) = (&mut self.blocks.position, &self.pruned_at, &self.blocks.particle);
+        let shares = now.chunks_mut(places).zip(before.chunks(places)).zip(particle.chunks(places));
+        let one = |((now, before), particle): ((&mut [_], &[_]), &[_])| {
             take_over(now, particle, position);
             lanes::run(instructions, LargestMoves { image, before, now })
         };
-        let (now, before, particle) = (&mut self.blocks.position, &self.pruned_at, &self.blocks.particle);
-        let largest = if self.shares.len() == 1 {
-            one(now, before, particle)
-        } else {
-            let shares = now.par_chunks_mut(places).zip(before.par_chunks(places)).zip(particle.par_chunks(places));
-            shares.map(|((now, before), particle)| one(now, before, particle)).reduce(|| [0.0; 2], two_largest)
-        };
-        closer_by(largest)
+        threads::sum(self.is_large, shares, one, Moved::and).closer_by()
     }
 
     /// By how much two particles can have come nearer to each other since they were `before`.
     fn moved(&self, boundary: &Boundary<D>, before: &[[f64; D]], blocks: &Blocks<D>) -> f64 {
-        let moves = LargestMoves { image: NearestImage::new(boundary), before, now: &blocks.position };
-        closer_by(lanes::run(self.instructions, moves))
+        let (image, places) = (NearestImage::new(boundary), self.places_a_share());
+        let shares = before.chunks(places).zip(blocks.position.chunks(places));
+        let one = |(before, now)| lanes::run(self.instructions, LargestMoves { image, before, now });
+        threads::sum(self.are_shared(), shares, one, Moved::and).closer_by()
     }
 
     /// The skin `s` of least cost. A force evaluation costs in proportion to the volume within reach, `(r + s)^D`, where `r`
@@ -174,27 +191,25 @@ impl<const D: usize> Neighbours<D> {
         1.5 * self.cutoff
     }
 
-    fn build(&mut self, boundary: &Boundary<D>, position: &[Vector<D>]) {
-        self.blocks = Blocks::sorted(boundary, position);
+    /// Sorts the particles, and searches for pairs.
+    pub(crate) fn build(&mut self, boundary: &Boundary<D>, position: &[Vector<D>]) {
+        let expected = if self.builds == 0 { GUESS * position.len() / LANES } else { self.len() };
+        let threads = if expected < WORTH_SHARING { 1 } else { rayon::current_num_threads() };
+        self.is_large = threads > 1 && expected >= WORTH_WAKING;
+        self.blocks = Blocks::sorted(boundary, position, threads > 1);
         let count = self.blocks.count();
-        let expected = if self.builds == 0 { GUESS * count } else { self.len() };
-        let threads = if expected < WORTH_THREADS { 1 } else { rayon::current_num_threads() };
         let most = if threads == 1 { 1 } else { SHARES_A_THREAD * threads };
         self.share = count.div_ceil(most).max(1);
         let shares = count.div_ceil(self.share);
         self.wide.resize_with(shares, Rows::default);
         self.shares.resize_with(shares, Rows::default);
-        let map = Map::new(boundary, &self.blocks, self.cutoff, self.wide_skin);
+        let map = Map::new(boundary, &self.blocks, self.cutoff, self.wide_skin, shares > 1);
         let (instructions, share) = (self.instructions, self.share);
         let search = |(number, rows): (usize, &mut Rows)| {
             let range = share * number..count.min(share * (number + 1));
             lanes::run(instructions, Search { map: &map, range, rows });
         };
-        if shares == 1 {
-            self.wide.iter_mut().enumerate().for_each(search);
-        } else {
-            self.wide.par_iter_mut().enumerate().for_each(search);
-        }
+        threads::for_each(shares > 1, self.wide.iter_mut().enumerate(), search);
         self.built_at.clone_from(&self.blocks.position);
         self.built_in = Some((boundary.axes, boundary.lower, boundary.upper));
         self.builds += 1;
@@ -208,21 +223,7 @@ impl<const D: usize> Neighbours<D> {
         // Positions outside the box cost no pair here: the nearest image is that of the pair, wherever the two are.
         let (image, reach) = (NearestImage::new(boundary), rounded_up(self.cutoff + self.skin));
         let prune = |(rows, wide): (&mut Rows, &Rows)| lanes::run(*instructions, Prune { image, blocks, reach, wide, rows });
-        if wide.len() == 1 {
-            shares.iter_mut().zip(&*wide).for_each(prune);
-        } else {
-            shares.par_iter_mut().zip(&*wide).for_each(prune);
-        }
+        threads::for_each(wide.len() > 1, shares.iter_mut().zip(&*wide), prune);
         self.pruned_at.clone_from(&self.blocks.position);
     }
-}
-
-/// The two largest of two pairs, each the larger first.
-fn two_largest([a, b]: [f64; 2], [c, d]: [f64; 2]) -> [f64; 2] {
-    if a > c { [a, b.max(c)] } else { [c, a.max(d)] }
-}
-
-/// By how much two particles come nearer to each other that move by the roots of these squares.
-fn closer_by(squares: [f64; 2]) -> f64 {
-    squares[0].sqrt() + squares[1].sqrt()
 }

@@ -6,8 +6,9 @@ use corpuscle_core::{Axis, Boundary, Contact, Failure, Invalid, Meeting, Particl
 use rayon::prelude::*;
 
 use crate::constraint::Held;
-use crate::force::{Force, Springs};
+use crate::force::Force;
 use crate::motion::{self, Moves, Stride};
+use crate::strider::{State, Strider};
 use crate::threads::{self, CHUNK};
 
 /// State and forces. Scratch arrays live beside what uses them.
@@ -162,7 +163,7 @@ impl<const D: usize> System<D> {
     /// [`settle`](Self::settle): the last kick of a step and the first of the next are by the same accelerations, and one pass over the
     /// memory does both, or finds the accelerations, too.
     pub(crate) fn owe_kick(&mut self, time: f64, lag: f64, kick: f64) {
-        if sweeping(&self.forces).is_none() {
+        if self.strides_at_once() == 0 {
             self.accelerate(time, lag);
         }
         self.owed = Some(kick);
@@ -182,14 +183,12 @@ impl<const D: usize> System<D> {
         }
     }
 
-    /// [`accelerate`](Self::accelerate), [`kick_and_drift`](Self::kick_and_drift), and [`hold`](Self::hold) at `end`: in one sweep
-    /// where that can be, and several of these in one where that is faster and nobody is to see what is between.
+    /// [`accelerate`](Self::accelerate), [`kick_and_drift`](Self::kick_and_drift), and [`hold`](Self::hold) at `end`: by the force
+    /// itself where it takes strides, and several of these together where that is faster and nobody is to see what is between.
     pub(crate) fn advance(&mut self, time: f64, lag: f64, kick: f64, drift: f64, end: f64) -> bool {
-        if !self.fresh
-            && let Some(springs) = sweeping(&self.forces)
-        {
-            let at_once = springs.strides_at_once(&self.boundary, self.particles.len()).min(self.patience);
-            self.due.push(Stride { moves: Moves { owed: self.owed.take(), kick, drift }, end });
+        let at_once = if self.fresh { 0 } else { self.strides_at_once() };
+        if at_once > 0 {
+            self.due.push(Stride { moves: Moves { owed: self.owed.take(), kick, drift }, end, confined: false });
             return self.due.len() < at_once || self.catch_up();
         }
         self.accelerate(time, lag);
@@ -198,13 +197,50 @@ impl<const D: usize> System<D> {
         finite
     }
 
+    /// Whether the next stride is likely to be put off.
+    pub(crate) fn is_patient(&mut self) -> bool {
+        !self.fresh && self.strides_at_once() > 1
+    }
+
+    /// How many strides the force takes together; 0 where none takes any.
+    fn strides_at_once(&mut self) -> usize {
+        let Self { boundary, particles, forces, held, patience, .. } = self;
+        strider(forces).map_or(0, |strider| strider.strides_at_once(boundary, particles.len(), held.len())).min(*patience)
+    }
+
     /// Takes the strides that are due. Tells whether all velocities were finite at the ends of the steps before.
     fn catch_up(&mut self) -> bool {
-        let Some(springs) = sweeping(&self.forces).filter(|_| !self.due.is_empty()) else { return true };
-        let [before, now] = springs.sweep(&self.boundary, &mut self.particles, &self.held, &self.due);
-        self.due.clear();
-        self.doubtful |= !(before && now);
-        before
+        if self.due.is_empty() {
+            return true;
+        }
+        let mut due = std::mem::take(&mut self.due);
+        let Self { boundary, particles, images, forces, held, .. } = self;
+        let (mut finite, mut taken) = ([true; 2], 0);
+        if let Some(strider) = strider(forces) {
+            let progress = strider.stride(State { boundary, particles, images, held }, &due);
+            (finite, taken) = (progress.finite, progress.taken);
+        }
+        self.doubtful |= finite != [true; 2];
+        for stride in due.drain(..).skip(taken) {
+            finite[0] &= self.take(stride);
+            if self.doubtful {
+                break; // and whoever asks is told
+            }
+        }
+        self.due = due;
+        finite[0]
+    }
+
+    /// Takes a stride that the force did not take; what it depends on is positions alone.
+    fn take(&mut self, Stride { moves: Moves { owed, kick, drift }, end, confined }: Stride) -> bool {
+        self.owed = owed;
+        self.accelerate(end, 0.0);
+        let finite = self.kick_and_drift(kick, drift);
+        self.hold(end);
+        if confined {
+            motion::wrap_all(&self.boundary, &mut self.particles.position, &mut self.images);
+        }
+        finite
     }
 
     /// `v += a kick`, then `r += v drift`, in one pass. Tells whether the kick put off before, if there was one, left every
@@ -237,14 +273,18 @@ impl<const D: usize> System<D> {
     /// Reflects at walls and wraps around periodic axes what moved out of the box in a step of length `dt` that ends at
     /// `end`. Hits of walls are kept for the observer.
     pub(crate) fn confine(&mut self, end: f64, dt: f64, path: Path) -> Result<(), Failure> {
+        if let Some(stride) = self.due.last_mut() {
+            stride.confined = true; // in its turn; whoever puts strides off knows no walls
+            return Ok(());
+        }
         if self.boundary.axes.contains(&Axis::Periodic) {
             motion::wrap_all(&self.boundary, &mut self.particles.position, &mut self.images);
         }
         if !self.boundary.axes.contains(&Axis::Walls) {
             return Ok(());
         }
-        // A sweep leaves no accelerations behind.
-        let path = if sweeping(&self.forces).is_some() { Path::Straight } else { path };
+        // A force that takes strides leaves no accelerations behind.
+        let path = if self.strides_at_once() > 0 { Path::Straight } else { path };
         for i in 0..self.particles.len() {
             for k in 0..D {
                 if self.boundary.axes[k] == Axis::Walls {
@@ -398,8 +438,8 @@ impl Bounce {
     }
 }
 
-/// The springs whose accelerations are found, used and forgotten in one sweep over the memory, where they are all there is.
-fn sweeping<const D: usize>(forces: &[Box<dyn Force<D>>]) -> Option<&Springs> {
+/// The force that takes strides, where it is the only one.
+fn strider<const D: usize>(forces: &mut [Box<dyn Force<D>>]) -> Option<&mut dyn Strider<D>> {
     let [force] = forces else { return None };
-    force.springs().filter(|springs| springs.can_sweep())
+    force.strider()
 }

@@ -4,11 +4,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use rayon::Yield;
+use rayon::prelude::*;
 
 /// Particles a thread moves at a time.
 pub(crate) const CHUNK: usize = 2048;
-/// How long a thread looks for work before it may fall asleep: about as long as one needs to wake.
-const PATIENCE: Duration = Duration::from_micros(50);
+/// How long a thread looks for work before it may fall asleep: whoever it waits for may have lost its processor for a moment.
+const PATIENCE: Duration = Duration::from_millis(2);
 /// How long before it gives way to whoever else needs its processor: longer than what is between two passes.
 const CLAIM: Duration = Duration::from_micros(20);
 
@@ -16,6 +17,29 @@ const CLAIM: Duration = Duration::from_micros(20);
 /// cache, and that takes as long as to move some ten thousand.
 pub(crate) fn are_worth_it(particles: usize) -> bool {
     particles >= 12 * CHUNK && rayon::current_num_threads() > 1
+}
+
+/// Does the same with every part, by all threads of the pool where the work is to be shared.
+pub(crate) fn for_each<T: Send>(shared: bool, parts: impl Iterator<Item = T>, one: impl Fn(T) + Send + Sync) {
+    if shared {
+        parts.collect::<Vec<_>>().into_par_iter().for_each(one);
+    } else {
+        parts.for_each(one);
+    }
+}
+
+/// Does the same with every part, and puts together what that gives: in any order, beginning with the default.
+pub(crate) fn sum<T: Send, R: Default + Send>(
+    shared: bool,
+    parts: impl Iterator<Item = T>,
+    one: impl Fn(T) -> R + Send + Sync,
+    and: impl Fn(R, R) -> R + Send + Sync,
+) -> R {
+    if shared {
+        parts.collect::<Vec<_>>().into_par_iter().map(one).reduce(R::default, and)
+    } else {
+        parts.map(one).fold(R::default(), and)
+    }
 }
 
 /// Does work of many short passes by the threads of the pool, which look for their shares of the next one without falling asleep

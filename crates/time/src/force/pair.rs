@@ -1,6 +1,7 @@
 //! Short-range forces between all pairs, from one potential or from a table of them.
 
 mod kernel;
+mod strides;
 mod tensor;
 
 use corpuscle_core::{Axis, Boundary, Instructions, Invalid, Particles, Vector};
@@ -11,8 +12,10 @@ use crate::exact::Quantum;
 use crate::image::NearestImage;
 use crate::lanes;
 use crate::neighbours::{Blocks, Neighbours, Rows};
+use crate::strider::Strider;
 use crate::threads::{self, CHUNK};
 use kernel::{AddEnergies, AddForces, Law, Pairs, Table, Totals, Uniform};
+use strides::InOrder;
 
 /// How far typical pairs are below the bound of the sums' quantum: forces up to `2^14` times energy over length and energies
 /// up to `2^14` times the energy are still summed with the finest one.
@@ -68,6 +71,7 @@ pub struct PairForce<P, const D: usize> {
     /// Of each place in the list's order.
     force: Vec<[f64; D]>,
     quantum: Quantum,
+    order: InOrder<D>,
 }
 
 impl<P: PairPotential, const D: usize> PairForce<P, D> {
@@ -100,7 +104,16 @@ impl<P: PairPotential, const D: usize> PairForce<P, D> {
         let cutoff = largest(&table, P::cutoff);
         let neighbours = Neighbours::new(cutoff, skin);
         let quantum = finest(&table, |potential| potential.depth() / potential.length());
-        Self { table, species, shifted: true, neighbours, instructions: Instructions::detect(), force: vec![], quantum }
+        Self {
+            table,
+            species,
+            shifted: true,
+            neighbours,
+            instructions: Instructions::detect(),
+            force: vec![],
+            quantum,
+            order: InOrder::default(),
+        }
     }
 
     /// The potential; between particles of the first species, where it depends on that.
@@ -163,10 +176,10 @@ impl<P: PairPotential, const D: usize> PairForce<P, D> {
                 let pairs = Self::pairs(law, boundary, blocks, rows);
                 lanes::run(self.instructions, AddForces::<L, D, LEVELS> { pairs, quanta, force })
             };
-            let scale = if shares.len() == 1 {
-                one((force, &shares[0]))
-            } else {
+            let scale = if self.neighbours.is_large {
                 force.par_chunks_mut(places).zip(shares).map(one).reduce(|| 0.0, larger)
+            } else {
+                force.chunks_mut(places).zip(shares).map(one).fold(0.0, larger)
             };
             // The last quantum is only a guess, which saves time where it is right: the bits follow from the largest force.
             let quantum = finest.coarsened(scale * cutoff);
@@ -279,6 +292,10 @@ impl<P: PairPotential, const D: usize> Force<D> for PairForce<P, D> {
 
     fn virial_tensor(&self, _: f64, boundary: &Boundary<D>, particles: &Particles<D>) -> Option<Tensor<D>> {
         Some(tensor::virial_tensor(&self.table, self.species, boundary, particles))
+    }
+
+    fn strider(&mut self) -> Option<&mut dyn Strider<D>> {
+        Some(self)
     }
 
     fn validate(&self, boundary: &Boundary<D>, particles: &Particles<D>) -> Result<(), Invalid> {

@@ -11,9 +11,9 @@ mod strides;
 mod sweep;
 
 use super::{Force, Tensor, add_product, finite, massive, not_negative};
-use crate::constraint::Held;
 use crate::image::NearestImage;
 use crate::motion::{Stride, both};
+use crate::strider::{Progress, State, Strider};
 use lattice::Lattice;
 use run::{Place, Run, Stretch};
 
@@ -131,34 +131,6 @@ impl Springs {
         &self.given
     }
 
-    /// Whether [`sweep`](Self::sweep) may be asked for: all ends are near enough in memory, and there is no friction, which would need
-    /// the accelerations before.
-    pub(crate) fn can_sweep(&self) -> bool {
-        self.reach <= FARTHEST && !self.damped
-    }
-
-    /// How many strides of so many particles [`sweep`](Self::sweep) should be given at once, where nobody looks at the particles in between.
-    pub(crate) fn strides_at_once<const D: usize>(&self, boundary: &Boundary<D>, particles: usize) -> usize {
-        let nothing_else = boundary.axes == [Axis::Open; D];
-        self.lattice(boundary).filter(|_| nothing_else).map_or(1, |lattice| lattice.strides_at_once::<D>(particles))
-    }
-
-    /// Takes strides, each by the accelerations at the positions before it; coordinates that are held (in the order of their particles)
-    /// go where they have to be. Tells what [`kick_and_drift`](crate::motion::kick_and_drift) does, of all strides together.
-    pub(crate) fn sweep<const D: usize>(
-        &self,
-        boundary: &Boundary<D>,
-        particles: &mut Particles<D>,
-        held: &[Held],
-        strides: &[Stride],
-    ) -> [bool; 2] {
-        if let Some(lattice) = self.lattice(boundary) {
-            return lattice.sweep(particles, held, strides);
-        }
-        let one = |stride: &Stride| self.scatter(boundary, particles, held, *stride);
-        strides.iter().map(one).fold([true; 2], both)
-    }
-
     /// The lattice, unless nearest images have to be looked for.
     fn lattice<const D: usize>(&self, boundary: &Boundary<D>) -> Option<&Lattice> {
         self.lattice.as_ref().filter(|_| !boundary.axes.contains(&Axis::Periodic))
@@ -205,6 +177,29 @@ impl Springs {
     }
 }
 
+impl<const D: usize> Strider<D> for Springs {
+    /// One where springs are no lattice, or something else moves particles, too; none where ends are too far apart in memory, or
+    /// there is friction, which would need the accelerations before.
+    fn strides_at_once(&self, boundary: &Boundary<D>, particles: usize, _: usize) -> usize {
+        if self.reach > FARTHEST || self.damped {
+            return 0;
+        }
+        let nothing_else = boundary.axes == [Axis::Open; D];
+        self.lattice(boundary).filter(|_| nothing_else).map_or(1, |lattice| lattice.strides_at_once::<D>(particles))
+    }
+
+    fn stride(&mut self, state: State<'_, D>, strides: &[Stride]) -> Progress {
+        let State { boundary, particles, held, .. } = state;
+        let finite = if let Some(lattice) = self.lattice(boundary) {
+            lattice.sweep(particles, held, strides)
+        } else {
+            let one = |stride: &Stride| self.scatter(boundary, particles, held, *stride);
+            strides.iter().map(one).fold([true; 2], both)
+        };
+        Progress { taken: strides.len(), finite }
+    }
+}
+
 impl<const D: usize> Force<D> for Springs {
     fn name(&self) -> &'static str {
         "springs"
@@ -218,7 +213,7 @@ impl<const D: usize> Force<D> for Springs {
         self.stretch(&self.runs, boundary, Place { from: 0, position, velocity, mass, acceleration });
     }
 
-    fn springs(&self) -> Option<&Springs> {
+    fn strider(&mut self) -> Option<&mut dyn Strider<D>> {
         Some(self)
     }
 

@@ -5,9 +5,13 @@ use corpuscle_core::{Axis, Boundary, Vector};
 
 use crate::image::NearestImage;
 use crate::lanes::{InLanes, LANES, Lanes};
+use crate::threads::{self, CHUNK};
 
 /// What stands in for a particle's index at places without one.
 pub(crate) const NOBODY: u32 = u32::MAX;
+
+/// Columns that one thread sorts at a time.
+const SORTED_TOGETHER: usize = 8;
 
 /// Positions in blocks of [`LANES`] particles that are near each other.
 ///
@@ -124,10 +128,15 @@ impl<const D: usize> Blocks<D> {
         Self { position: vec![], species: vec![], particle: vec![], place: vec![], columns }
     }
 
-    /// Sorts the particles.
-    pub(crate) fn sorted(boundary: &Boundary<D>, places: &[Vector<D>]) -> Self {
+    /// Sorts the particles, by all threads where that is to be shared.
+    pub(crate) fn sorted(boundary: &Boundary<D>, places: &[Vector<D>], shared: bool) -> Self {
         let mut columns = Columns::new(boundary, places);
-        let of: Vec<u32> = places.iter().map(|&r| columns.of(r) as u32).collect();
+        let mut of = vec![0u32; places.len()];
+        threads::for_each(shared, of.chunks_mut(CHUNK).zip(places.chunks(CHUNK)), |(of, places)| {
+            for (of, &r) in of.iter_mut().zip(places) {
+                *of = columns.of(r) as u32;
+            }
+        });
         let mut ends = vec![0u32; columns.number() + 1];
         for &column in &of {
             ends[column as usize + 1] += 1;
@@ -144,9 +153,17 @@ impl<const D: usize> Blocks<D> {
         }
         let mut particle = Vec::with_capacity(places.len() + columns.number() * LANES);
         columns.starts.push(0);
+        let (mut rest, mut all) = (&mut members[..], vec![]);
         for bounds in ends.windows(2) {
-            let column = &mut members[bounds[0] as usize..bounds[1] as usize];
-            column.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+            all.push(rest.split_off_mut(..(bounds[1] - bounds[0]) as usize).unwrap_or_default());
+        }
+        let sort = |columns: &mut [&mut [(f64, u32)]]| {
+            for column in columns {
+                column.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+            }
+        };
+        threads::for_each(shared, all.chunks_mut(SORTED_TOGETHER), sort);
+        for column in all {
             particle.extend(column.iter().map(|&(_, i)| i));
             particle.resize(particle.len().next_multiple_of(LANES), NOBODY);
             columns.starts.push((particle.len() / LANES) as u32);
@@ -159,7 +176,8 @@ impl<const D: usize> Blocks<D> {
         }
         let position = vec![[f64::NAN; D]; particle.len()];
         let mut blocks = Self { position, species: vec![0; particle.len()], particle, place, columns };
-        blocks.load(places);
+        let chunks = blocks.position.chunks_mut(CHUNK).zip(blocks.particle.chunks(CHUNK));
+        threads::for_each(shared, chunks, |(here, particle)| take_over(here, particle, places));
         blocks
     }
 
@@ -208,25 +226,64 @@ pub(crate) struct LargestMoves<'a, const D: usize> {
 }
 
 impl<const D: usize> InLanes for LargestMoves<'_, D> {
-    type Output = [f64; 2];
+    type Output = Moved;
 
     #[inline(always)]
-    fn run<V: Lanes>(self) -> [f64; 2] {
+    fn run<V: Lanes>(self) -> Moved {
         let image = self.image.in_lanes::<V>();
-        let zero = V::splat(0.0);
-        let (mut first, mut second) = (zero, zero);
+        let mut farthest = Farthest::<V>::new();
         for (before, now) in self.before.chunks_exact(LANES).zip(self.now.chunks_exact(LANES)) {
-            let mut d = [zero; D];
+            let mut way = [V::splat(0.0); D];
             for k in 0..D {
-                d[k] = image.component(k, column::<V, D>(now, k).sub(column::<V, D>(before, k)));
+                way[k] = image.component(k, column::<V, D>(now, k).sub(column::<V, D>(before, k)));
             }
-            let moved = norm_squared(&d).larger(zero); // places without a particle stay
-            second = second.larger(moved.smaller(first));
-            first = first.larger(moved);
+            farthest.see(&way);
         }
-        let mut all: Vec<f64> = first.lanes().into_iter().chain(second.lanes()).collect();
-        all.sort_unstable_by(f64::total_cmp);
-        [all[2 * LANES - 1], all[2 * LANES - 2]]
+        farthest.moved()
+    }
+}
+
+/// The squares of the two longest ways in each lane.
+pub(crate) struct Farthest<V> {
+    first: V,
+    second: V,
+}
+
+impl<V: Lanes> Farthest<V> {
+    #[inline(always)]
+    pub(crate) fn new() -> Self {
+        Self { first: V::splat(0.0), second: V::splat(0.0) }
+    }
+
+    #[inline(always)]
+    pub(crate) fn see<const D: usize>(&mut self, way: &[V; D]) {
+        let square = norm_squared(way).larger(V::splat(0.0)); // places without a particle stay
+        self.second = self.second.larger(square.smaller(self.first));
+        self.first = self.first.larger(square);
+    }
+
+    /// Those of all lanes.
+    #[inline(always)]
+    pub(crate) fn moved(self) -> Moved {
+        let lanes = self.first.lanes().into_iter().zip(self.second.lanes());
+        lanes.map(|(first, second)| Moved([first, second])).fold(Moved::default(), Moved::and)
+    }
+}
+
+/// The squares of the two longest ways that particles have moved, the longest first.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Moved([f64; 2]);
+
+impl Moved {
+    /// Those of these and other particles.
+    pub(crate) fn and(self, other: Self) -> Self {
+        let (Self([a, b]), Self([c, d])) = (self, other);
+        Self(if a > c { [a, b.max(c)] } else { [c, a.max(d)] })
+    }
+
+    /// By how much two particles can have come nearer to each other.
+    pub(crate) fn closer_by(self) -> f64 {
+        self.0[0].sqrt() + self.0[1].sqrt()
     }
 }
 

@@ -5,6 +5,7 @@ use corpuscle_core::{Axis, Boundary};
 use super::blocks::{Blocks, column, norm_squared};
 use crate::image::{NearestImage, NearestImages};
 use crate::lanes::{InLanes, LANES, Lanes};
+use crate::threads::{self, CHUNK};
 
 /// Which components of an arrow between particles need the nearest image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -283,8 +284,13 @@ pub(crate) struct Map<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Map<'a, D> {
-    pub(crate) fn new(boundary: &Boundary<D>, blocks: &'a Blocks<D>, cutoff: f64, skin: f64) -> Self {
-        let boxes: Vec<_> = (0..blocks.count()).map(|block| blocks.bounds(block)).collect();
+    pub(crate) fn new(boundary: &Boundary<D>, blocks: &'a Blocks<D>, cutoff: f64, skin: f64, shared: bool) -> Self {
+        let mut boxes = vec![([0.0; D], [0.0; D]); blocks.count()];
+        threads::for_each(shared, boxes.chunks_mut(CHUNK).enumerate(), |(number, boxes)| {
+            for (block, bounds) in (number * CHUNK..).zip(boxes) {
+                *bounds = blocks.bounds(block);
+            }
+        });
         let periodic = |k: &usize| boundary.axes[*k] == Axis::Periodic;
         let (lower, upper) = (boundary.lower, boundary.upper);
         // Positions may come a little outside the box; and a pair at the cutoff must not be lost to rounding.

@@ -1,6 +1,6 @@
 //! Soft spheres: conservation, images, and independence of the neighbour lists over whole runs.
 
-use corpuscle_core::{Axis, Boundary, Engine, Particles, Random, Vector, placement};
+use corpuscle_core::{Axis, Boundary, Engine, Failure, Particles, Random, Vector, placement};
 use corpuscle_time::{Force, Gravity, Integrator, LennardJones, PairForce, Spring, Springs, TimeDriven, WeeksChandlerAndersen};
 use proptest::prelude::*;
 
@@ -153,5 +153,72 @@ proptest! {
         let scale: f64 = engine.particles().velocity.iter().zip(&engine.particles().mass).map(|(v, m)| m * v.norm()).sum();
         let bound = engine.steps() as f64 * 4.0 * f64::EPSILON * scale;
         prop_assert!((engine.momentum() - before).norm() < bound, "{:?}", engine.momentum() - before);
+    }
+}
+
+/// A gas at random places, so that forces are of all sizes, some of its particles fast enough for several turns around the box; the
+/// state after each of `stops` equal parts of so many steps, or the failure, and the state then.
+fn hot_gas<const D: usize>(
+    (count, side, seed): (usize, f64, u64),
+    axes: [Axis; D],
+    (kinds, integrator): (u16, Integrator),
+    (steps, every): (u64, u64),
+) -> (Result<(), Failure>, u64, Particles<D>, Vec<[i64; D]>) {
+    let boundary = Boundary { axes, ..Boundary::new([-1.0; D], [side - 1.0; D], Axis::Open) };
+    let mut random = Random::new(seed, 0);
+    let mut particles = Particles::new();
+    for i in 0..count {
+        let place = Vector::from_fn(|k| boundary.lower[k] + side * random.uniform());
+        let speed = if i % 50 == 0 { 300.0 } else { 1.0 };
+        let velocity = Vector::from_fn(|_| speed * random.normal());
+        particles.push(place, velocity, 0.5 + random.uniform(), 0.0, i as u16 % kinds);
+    }
+    let potential = |a: u16, b: u16| WeeksChandlerAndersen::new(1.0 / f64::from(1 + a + b), 0.8 + 0.1 * f64::from(a.min(b)));
+    let force = if kinds == 1 { PairForce::new(potential(0, 0)) } else { PairForce::between_species(kinds, potential) };
+    let mut engine = TimeDriven::new(boundary, particles, vec![Box::new(force)], integrator).unwrap();
+    let dt = integrator.dt().unwrap();
+    let mut outcome = Ok(());
+    while outcome.is_ok() && engine.steps() < steps {
+        outcome = engine.advance((engine.steps() + every).min(steps) as f64 * dt, &mut ());
+    }
+    let images = (0..count).map(|i| engine.images(i)).collect();
+    (outcome, engine.steps(), engine.snapshot(), images)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// Where nobody looks, particles stay in the order of the neighbour list for many steps, and are moved by whoever finds their
+    /// forces. Whoever stops after every step has them back in their own each time. Neither shows, nor who else helps.
+    #[test]
+    fn steps_taken_together_are_those_taken_one_by_one(
+        seed in any::<u64>(),
+        solid in any::<bool>(),
+        periodic in prop::array::uniform3(any::<bool>()),
+        kinds in 1..3u16,
+        integrator in prop::sample::select(vec!["velocity-verlet", "symplectic-euler", "yoshida-4", "yoshida-6"]),
+        threads in 1..4usize,
+        dt in prop::sample::select(vec![1e-6, 1e-4, 1e-3]),
+    ) {
+        let axes = periodic.map(|periodic| if periodic { Axis::Periodic } else { Axis::Open });
+        let law = (kinds, Integrator::from_name(integrator, dt).unwrap());
+        let run = |threads: usize, every: u64| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                if solid {
+                    let (outcome, steps, particles, images) = hot_gas((500, 8.0, seed), axes, law, (60, every));
+                    (outcome, steps, format!("{particles:?} {images:?}"))
+                } else {
+                    let axes = [axes[0], axes[1]];
+                    let (outcome, steps, particles, images) = hot_gas((3000, 60.0, seed), axes, law, (60, every));
+                    (outcome, steps, format!("{particles:?} {images:?}"))
+                }
+            })
+        };
+        let one_by_one = run(1, 1);
+        let together = run(threads, 60);
+        prop_assert_eq!(&one_by_one.0, &together.0);
+        prop_assert_eq!(one_by_one.1, together.1);
+        prop_assert!(one_by_one.2 == together.2);
     }
 }

@@ -237,12 +237,53 @@ fn add_up<V: Lanes, L: Law, S: Sum<V, D>, const D: usize>(
     }
 }
 
-/// Finds the force on every place of a share, and the largest `|U'(r)/r|`.
-pub(super) struct AddForces<'a, L, const D: usize, const LEVELS: usize> {
-    pub(super) pairs: Pairs<'a, L, D>,
-    /// Forces are rounded to the first; on a second level, what that leaves to the second.
-    pub(super) quanta: [Quantum; 2],
-    pub(super) force: &'a mut [[f64; D]],
+/// Finds the forces on the particles of one block after another, and the largest `|U'(r)/r|`.
+pub(super) struct Finder<'a, V: Lanes, L, const D: usize, const LEVELS: usize> {
+    pairs: &'a Pairs<'a, L, D>,
+    image: NearestImages<V, D>,
+    quanta: [Quantum; 2],
+    magic: [V; 2],
+    unit: f64,
+    most: V::Integers,
+}
+
+impl<'a, V: Lanes, L: Law, const D: usize, const LEVELS: usize> Finder<'a, V, L, D, LEVELS> {
+    /// Forces are rounded to the first quantum; on a second level, what that leaves to the second.
+    #[inline(always)]
+    pub(super) fn new(pairs: &'a Pairs<'a, L, D>, quanta: [Quantum; 2]) -> Self {
+        let magic = [V::splat(quanta[0].magic()), V::splat(quanta[1].magic())];
+        Self { pairs, image: pairs.image.in_lanes(), quanta, magic, unit: quanta[LEVELS - 1].unit(), most: V::zeros() }
+    }
+
+    /// The components of the forces.
+    #[inline(always)]
+    pub(super) fn forces(&mut self, block: usize, near: &Near<'_>) -> [V; D] {
+        let mut sum = Forces::<V, D, LEVELS> { magic: self.magic, bits: [[V::zeros(); D]; LEVELS], most: self.most };
+        add_up(self.pairs, &self.image, block, near, &mut sum);
+        self.most = sum.most;
+        let terms = terms(near);
+        let bias = self.quanta.map(|quantum| quantum.bias(terms));
+        let mut forces = [V::splat(self.unit); D];
+        for k in 0..D {
+            let numbers = if LEVELS == 1 {
+                V::numbers(sum.bits[0][k], bias[0])
+            } else {
+                let (coarse, fine) = (V::integers(sum.bits[0][k]), V::integers(sum.bits[LEVELS - 1][k]));
+                V::new(std::array::from_fn(|lane| {
+                    let coarse = i128::from(coarse[lane].wrapping_sub(bias[0]));
+                    ((coarse << BITS) + i128::from(fine[lane].wrapping_sub(bias[1]))) as f64
+                }))
+            };
+            forces[k] = forces[k].mul(numbers);
+        }
+        forces
+    }
+
+    /// The largest `|U'(r)/r|` so far.
+    #[inline(always)]
+    pub(super) fn largest(&self) -> f64 {
+        largest_of(V::integers(self.most))
+    }
 }
 
 /// Force on each particle of a block, as sums of bits.
@@ -275,38 +316,31 @@ impl<V: Lanes, const D: usize, const LEVELS: usize> Sum<V, D> for Forces<V, D, L
     }
 }
 
+/// Finds the force on every place of a share, and the largest `|U'(r)/r|`.
+pub(super) struct AddForces<'a, L, const D: usize, const LEVELS: usize> {
+    pub(super) pairs: Pairs<'a, L, D>,
+    /// See [`Finder::new`].
+    pub(super) quanta: [Quantum; 2],
+    pub(super) force: &'a mut [[f64; D]],
+}
+
 impl<L: Law, const D: usize, const LEVELS: usize> InLanes for AddForces<'_, L, D, LEVELS> {
     type Output = f64;
 
     #[inline(always)]
     fn run<V: Lanes>(self) -> f64 {
         let Self { pairs, quanta, force } = self;
-        let image = pairs.image.in_lanes::<V>();
-        let magic = [V::splat(quanta[0].magic()), V::splat(quanta[1].magic())];
-        let unit = quanta[LEVELS - 1].unit();
-        let mut most = V::zeros();
+        let mut finder = Finder::<V, L, D, LEVELS>::new(&pairs, quanta);
         let rows = (pairs.rows.first..).zip(pairs.rows.iter());
         for ((block, near), force) in rows.zip(force.chunks_exact_mut(LANES)) {
-            let mut sum = Forces::<V, D, LEVELS> { magic, bits: [[V::zeros(); D]; LEVELS], most };
-            add_up(&pairs, &image, block, &near, &mut sum);
-            most = sum.most;
-            let terms = terms(&near);
+            let found = finder.forces(block, &near).map(V::lanes);
             for k in 0..D {
-                let numbers = if LEVELS == 1 {
-                    V::numbers(sum.bits[0][k], quanta[0].bias(terms)).lanes()
-                } else {
-                    let (coarse, fine) = (V::integers(sum.bits[0][k]), V::integers(sum.bits[LEVELS - 1][k]));
-                    std::array::from_fn(|lane| {
-                        let coarse = i128::from(coarse[lane].wrapping_sub(quanta[0].bias(terms)));
-                        ((coarse << BITS) + i128::from(fine[lane].wrapping_sub(quanta[1].bias(terms)))) as f64
-                    })
-                };
                 for lane in 0..LANES {
-                    force[lane][k] = unit * numbers[lane];
+                    force[lane][k] = found[k][lane];
                 }
             }
         }
-        largest_of(V::integers(most))
+        finder.largest()
     }
 }
 

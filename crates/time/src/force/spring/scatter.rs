@@ -14,13 +14,13 @@ use crate::motion::{Moves, Stride, both};
 const WINDOW: usize = 4096;
 
 impl Springs {
-    /// [`sweep`](Self::sweep), whatever the springs.
+    /// A stride, whatever the springs; tells what [`kick_and_drift`](crate::motion::kick_and_drift) does.
     pub(super) fn scatter<const D: usize>(
         &self,
         boundary: &Boundary<D>,
         particles: &mut Particles<D>,
         held: &[Held],
-        Stride { moves, end }: Stride,
+        Stride { moves, end, .. }: Stride,
     ) -> [bool; 2] {
         let Particles { position, velocity, mass, .. } = &mut *particles;
         let finite = in_parts(&Scattering { springs: self, boundary, mass, held, moves }, position, velocity, NEAR, self.reach);

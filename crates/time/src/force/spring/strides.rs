@@ -30,7 +30,8 @@ impl Lattice {
         (AT_WORK / (4 * particle * (self.reach + BLOCK))).clamp(1, MOST)
     }
 
-    /// Takes these strides, one after the other; tells what [`Springs::sweep`](super::Springs::sweep) does.
+    /// Takes these strides, one after the other; tells what [`kick_and_drift`](crate::motion::kick_and_drift)
+    /// does, of all of them together.
     pub(super) fn sweep<const D: usize>(&self, particles: &mut Particles<D>, held: &[Held], strides: &[Stride]) -> [bool; 2] {
         let Particles { position, velocity, mass, .. } = particles;
         let sweep = Gathering { lattice: self, mass, held, strides };
@@ -158,7 +159,7 @@ impl<'a, const D: usize> Pass<'a, D> {
         velocity: &mut [Vector<D>],
         soon: [&[Vector<D>]; 2],
     ) -> [bool; 2] {
-        let Stride { moves, end } = self.stride;
+        let Stride { moves, end, .. } = self.stride;
         let first = self.from + start;
         let particles = first..first + position.len();
         let mut finite = [true; 2];
@@ -222,7 +223,11 @@ mod tests {
         let lattice = Lattice::new(&springs).unwrap();
         let held = [3, 250, 260, 1700].map(|i| Held::new(i, i % 3, None, 0.0, &particles).unwrap());
         let strides: Vec<_> = (0..6)
-            .map(|n| Stride { moves: Moves { owed: (n % 2 == 0).then_some(0.05), kick: 0.05, drift: 0.1 }, end: f64::from(n) })
+            .map(|n| Stride {
+                moves: Moves { owed: (n % 2 == 0).then_some(0.05), kick: 0.05, drift: 0.1 },
+                end: f64::from(n),
+                confined: false,
+            })
             .collect();
         let gathering = |strides| Gathering { lattice: &lattice, mass: &particles.mass, held: &held, strides };
         let nothing = || Seam::new();
