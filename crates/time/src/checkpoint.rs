@@ -26,7 +26,7 @@ impl<const D: usize> Resume for TimeDriven<D> {
         from.part("system", &mut self.system)?;
         from.part("integrator", &mut self.stepper)?;
         self.validate()?;
-        self.system.doubtful = true;
+        (self.system.doubtful, self.system.at_once) = (true, None);
         self.keep();
         Ok(())
     }

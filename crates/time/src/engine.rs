@@ -234,7 +234,7 @@ impl<const D: usize> TimeDriven<D> {
 
     /// Makes the present state the one to go on from.
     fn restart(&mut self) -> Result<(), Invalid> {
-        self.system.fresh = false;
+        (self.system.fresh, self.system.at_once) = (false, None);
         self.system.hold(self.time);
         self.stepper.restart(&mut self.system, self.time, self.integrator.name())?;
         self.keep();

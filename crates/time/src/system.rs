@@ -29,6 +29,8 @@ pub(crate) struct System<const D: usize> {
     owed: Option<f64>,
     /// Strides that are still to be taken, before that kick; nobody sees the particles in between.
     due: Vec<Stride>,
+    /// How many strides the force takes together, until something else changes than places and velocities.
+    pub(crate) at_once: Option<usize>,
     /// The most strides that may be due.
     pub(crate) patience: usize,
     /// What rounding took from the positions, where the integrator knows it; else empty.
@@ -42,7 +44,7 @@ pub(crate) struct System<const D: usize> {
 resume!(System<const D> {
     values: [boundary, particles, held, acceleration, fresh, owed, remainder],
     // Images are written down by the engine.
-    set_up: [images, forces, contacts, due, patience, doubtful, velocity_dependent, estimate],
+    set_up: [images, forces, contacts, due, at_once, patience, doubtful, velocity_dependent, estimate],
 });
 
 impl<const D: usize> System<D> {
@@ -60,6 +62,7 @@ impl<const D: usize> System<D> {
             contacts: vec![],
             owed: None,
             due: vec![],
+            at_once: None,
             patience: usize::MAX,
             remainder: vec![],
             doubtful: true,
@@ -113,7 +116,7 @@ impl<const D: usize> System<D> {
         for i in 0..n {
             self.wrap(i);
         }
-        self.fresh = false;
+        (self.fresh, self.at_once) = (false, None);
         self.forces.iter().try_for_each(|force| force.validate(&self.boundary, &self.particles))
     }
 
@@ -204,8 +207,9 @@ impl<const D: usize> System<D> {
 
     /// How many strides the force takes together; 0 where none takes any.
     fn strides_at_once(&mut self) -> usize {
-        let Self { boundary, particles, forces, held, patience, .. } = self;
-        strider(forces).map_or(0, |strider| strider.strides_at_once(boundary, particles.len(), held.len())).min(*patience)
+        let Self { boundary, particles, forces, held, .. } = self;
+        let ask = || strider(forces).map_or(0, |strider| strider.strides_at_once(boundary, particles, held.len()));
+        (*self.at_once.get_or_insert_with(ask)).min(self.patience)
     }
 
     /// Takes the strides that are due. Tells whether all velocities were finite at the ends of the steps before.

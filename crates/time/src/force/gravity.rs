@@ -7,9 +7,11 @@ mod few;
 mod grains;
 mod lanes;
 mod scale;
+mod strides;
 mod tree;
 
 use super::{Force, Tensor, add_product, finite, not_negative};
+use crate::strider::Strider;
 use direct::Masses;
 use grains::attract_grains;
 use scale::Scale;
@@ -44,6 +46,20 @@ impl<const D: usize> Gravity<D> {
     /// The softening length.
     pub fn softening(&self) -> f64 {
         self.softening
+    }
+
+    /// Adds the accelerations of those with mass; tells in which units of length.
+    fn attract_masses(&mut self, particles: &Particles<D>, remainder: &[Vector<D>], acceleration: &mut [Vector<D>]) -> Scale {
+        let scale = Scale::new(self.softening, &particles.position, self.instructions);
+        let softening_squared = self.softening_squared(scale);
+        self.masses.load(self.constant, scale, particles, remainder);
+        self.masses.attract_each_other(softening_squared, !remainder.is_empty(), self.instructions);
+        self.masses.add_to(scale, acceleration);
+        scale
+    }
+
+    fn softening_squared(&self, scale: Scale) -> f64 {
+        (self.softening * scale.length) * (self.softening * scale.length)
     }
 
     fn sum_over_pairs(&self, particles: &Particles<D>, f: impl Fn(f64, f64) -> f64) -> f64 {
@@ -87,14 +103,10 @@ impl<const D: usize> Force<D> for Gravity<D> {
             few::attract(self.constant, self.softening, particles, remainder, acceleration);
             return;
         }
-        let scale = Scale::new(self.softening, &particles.position, self.instructions);
-        let softening_squared = (self.softening * scale.length) * (self.softening * scale.length);
-        let masses = &mut self.masses;
-        masses.load(self.constant, scale, particles, remainder);
-        masses.attract_each_other(softening_squared, !remainder.is_empty(), self.instructions);
-        masses.add_to(scale, acceleration);
-        if masses.index.len() < particles.len() {
-            attract_grains(self.constant, scale, softening_squared, &masses.index, particles, acceleration, self.instructions);
+        let scale = self.attract_masses(particles, remainder, acceleration);
+        let (softening_squared, masses) = (self.softening_squared(scale), &self.masses.index);
+        if masses.len() < particles.len() {
+            attract_grains(self.constant, scale, softening_squared, masses, particles, acceleration, self.instructions);
         }
     }
 
@@ -123,6 +135,10 @@ impl<const D: usize> Force<D> for Gravity<D> {
 
     fn validate(&self, boundary: &Boundary<D>, particles: &Particles<D>) -> Result<(), Invalid> {
         validate(self.constant, self.softening, boundary, particles)
+    }
+
+    fn strider(&mut self) -> Option<&mut dyn Strider<D>> {
+        Some(self)
     }
 
     fn point_gravity(&self) -> Option<f64> {

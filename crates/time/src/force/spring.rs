@@ -180,12 +180,12 @@ impl Springs {
 impl<const D: usize> Strider<D> for Springs {
     /// One where springs are no lattice, or something else moves particles, too; none where ends are too far apart in memory, or
     /// there is friction, which would need the accelerations before.
-    fn strides_at_once(&self, boundary: &Boundary<D>, particles: usize, _: usize) -> usize {
+    fn strides_at_once(&self, boundary: &Boundary<D>, particles: &Particles<D>, _: usize) -> usize {
         if self.reach > FARTHEST || self.damped {
             return 0;
         }
         let nothing_else = boundary.axes == [Axis::Open; D];
-        self.lattice(boundary).filter(|_| nothing_else).map_or(1, |lattice| lattice.strides_at_once::<D>(particles))
+        self.lattice(boundary).filter(|_| nothing_else).map_or(1, |lattice| lattice.strides_at_once::<D>(particles.len()))
     }
 
     fn stride(&mut self, state: State<'_, D>, strides: &[Stride]) -> Progress {

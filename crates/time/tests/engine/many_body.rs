@@ -186,7 +186,7 @@ fn hot_gas<const D: usize>(
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+    #![proptest_config(ProptestConfig::with_cases(16))]
 
     /// Where nobody looks, particles stay in the order of the neighbour list for many steps, and are moved by whoever finds their
     /// forces. Whoever stops after every step has them back in their own each time. Neither shows, nor who else helps.
@@ -220,5 +220,51 @@ proptest! {
         prop_assert_eq!(&one_by_one.0, &together.0);
         prop_assert_eq!(one_by_one.1, together.1);
         prop_assert!(one_by_one.2 == together.2);
+    }
+}
+
+/// Grains around a few masses; some are thrown out of all that there was, unless others come from farther away.
+fn dust(seed: u64, masses: usize, softening: f64, integrator: Integrator) -> TimeDriven<3> {
+    let mut random = Random::new(seed, 0);
+    let mut bodies = Particles::new();
+    for i in 0..400 {
+        let mass = if i * masses / 400 == (i + 1) * masses / 400 { 0.0 } else { 0.2 + random.uniform() };
+        let size = if seed % 2 == 0 && i % 37 == 5 { 1e12 } else { 3.0 };
+        let speed = if i % 41 == 7 { 1e9 } else { 0.5 };
+        bodies.push(Vector::from_fn(|_| size * random.normal()), Vector::from_fn(|_| speed * random.normal()), mass, 0.0, 0);
+    }
+    let space = Boundary::new([-5.0; 3], [5.0; 3], Axis::Open);
+    TimeDriven::new(space, bodies, vec![Box::new(Gravity::new(1.0, softening))], integrator).unwrap()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    /// Grains are taken along for many steps before the next are looked at, unless somebody stops after each.
+    #[test]
+    fn steps_of_grains_taken_together_are_those_taken_one_by_one(
+        seed in any::<u64>(),
+        masses in 1..20usize,
+        softened in any::<bool>(),
+        integrator in prop::sample::select(vec!["velocity-verlet", "symplectic-euler", "yoshida-4", "yoshida-6"]),
+        threads in 1..4usize,
+        dt in prop::sample::select(vec![1e-3, 0.1]),
+    ) {
+        let run = |threads: usize, every: u64| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let softening = if softened { 0.3 } else { 0.0 };
+                let mut engine = dust(seed, masses, softening, Integrator::from_name(integrator, dt).unwrap());
+                let mut outcome = Ok(());
+                while outcome.is_ok() && engine.steps() < 150 {
+                    outcome = engine.advance((engine.steps() + every) as f64 * dt, &mut ());
+                }
+                (outcome, engine.steps(), engine.snapshot())
+            })
+        };
+        let one_by_one = run(1, 1);
+        let together = run(threads, 150);
+        prop_assert_eq!(&one_by_one.0, &together.0);
+        prop_assert!(one_by_one == together);
     }
 }

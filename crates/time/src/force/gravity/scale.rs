@@ -24,6 +24,11 @@ impl Scale {
         Self { length: if largest > 0.0 { power_of_two((60 - exponent).clamp(-500, 500)) } else { 1.0 } }
     }
 
+    /// For a system that is many times as large.
+    pub(super) fn coarser(self) -> Self {
+        Self { length: self.length * power_of_two(-20) }
+    }
+
     /// What accelerations `G m r / r^3` of scaled lengths are multiplied by.
     pub(super) fn acceleration(self) -> f64 {
         self.length * self.length

@@ -45,7 +45,7 @@ struct Crossing<const D: usize> {
 }
 
 impl<P: PairPotential, const D: usize> Strider<D> for PairForce<P, D> {
-    fn strides_at_once(&self, boundary: &Boundary<D>, _: usize, held: usize) -> usize {
+    fn strides_at_once(&self, boundary: &Boundary<D>, _: &Particles<D>, held: usize) -> usize {
         if boundary.axes.contains(&Axis::Walls) || held > 0 { 0 } else { usize::MAX }
     }
 
