@@ -13,7 +13,12 @@ pub(crate) trait Eight: Copy {
     fn add(self, other: Self) -> Self;
     fn sub(self, other: Self) -> Self;
     fn mul(self, other: Self) -> Self;
+    /// `1/sqrt(x)` in single precision, root and quotient exactly rounded; infinite below the smallest normal number of that.
+    fn rough_inverse_root(self) -> Self;
 }
+
+/// Smaller numbers are taken for zero in single precision.
+const SMALLEST: f64 = f32::MIN_POSITIVE as f64;
 
 /// Work on eight lanes, whatever they are made of; [`Kernel`] says what must be inlined.
 pub(crate) trait InEights {
@@ -77,18 +82,25 @@ impl Eight for Array {
     fn mul(self, other: Self) -> Self {
         Self(std::array::from_fn(|l| self.0[l] * other.0[l]))
     }
+    #[inline(always)]
+    fn rough_inverse_root(self) -> Self {
+        Self(self.0.map(|x| f64::from(1.0 / (if x < SMALLEST { 0.0 } else { x } as f32).sqrt())))
+    }
 }
 
 #[cfg(target_arch = "x86_64")]
 mod x86 {
     use std::arch::x86_64::{
-        __m256d, __m512d, _mm256_add_pd, _mm256_loadu_pd, _mm256_mul_pd, _mm256_set1_pd, _mm256_storeu_pd, _mm256_sub_pd,
-        _mm512_add_pd, _mm512_loadu_pd, _mm512_mul_pd, _mm512_set1_pd, _mm512_storeu_pd, _mm512_sub_pd,
+        __m256d, __m512d, _CMP_LT_OQ, _CMP_NLT_UQ, _mm256_add_pd, _mm256_andnot_pd, _mm256_castps256_ps128, _mm256_cmp_pd,
+        _mm256_cvtpd_ps, _mm256_cvtps_pd, _mm256_div_ps, _mm256_extractf128_ps, _mm256_loadu_pd, _mm256_mul_pd, _mm256_set_m128,
+        _mm256_set1_pd, _mm256_set1_ps, _mm256_sqrt_ps, _mm256_storeu_pd, _mm256_sub_pd, _mm512_add_pd, _mm512_cmp_pd_mask,
+        _mm512_cvtpd_ps, _mm512_cvtps_pd, _mm512_loadu_pd, _mm512_maskz_mov_pd, _mm512_mul_pd, _mm512_set1_pd, _mm512_storeu_pd,
+        _mm512_sub_pd,
     };
 
     use corpuscle_core::instructions::Kernel;
 
-    use super::{Eight, InEights, LANES};
+    use super::{Eight, InEights, LANES, SMALLEST};
 
     /// Only ever run where the processor has AVX2.
     pub(super) struct WithAvx2<K>(pub(super) K);
@@ -154,6 +166,18 @@ mod x86 {
             // SAFETY: see the type.
             unsafe { Self(_mm256_mul_pd(self.0, other.0), _mm256_mul_pd(self.1, other.1)) }
         }
+        #[inline(always)]
+        fn rough_inverse_root(self) -> Self {
+            // SAFETY: see the type.
+            unsafe {
+                let smallest = _mm256_set1_pd(SMALLEST);
+                let first = _mm256_cvtpd_ps(_mm256_andnot_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(self.0, smallest), self.0));
+                let second = _mm256_cvtpd_ps(_mm256_andnot_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(self.1, smallest), self.1));
+                let roots = _mm256_sqrt_ps(_mm256_set_m128(second, first));
+                let y = _mm256_div_ps(_mm256_set1_ps(1.0), roots);
+                Self(_mm256_cvtps_pd(_mm256_castps256_ps128(y)), _mm256_cvtps_pd(_mm256_extractf128_ps::<1>(y)))
+            }
+        }
     }
 
     /// SAFETY of every block below: values of this type are made only under [`WithAvx512`], where the processor has it.
@@ -193,6 +217,15 @@ mod x86 {
             // SAFETY: see the type.
             Self(unsafe { _mm512_mul_pd(self.0, other.0) })
         }
+        #[inline(always)]
+        fn rough_inverse_root(self) -> Self {
+            // SAFETY: see the type.
+            unsafe {
+                let normal = _mm512_cmp_pd_mask::<_CMP_NLT_UQ>(self.0, _mm512_set1_pd(SMALLEST));
+                let roots = _mm256_sqrt_ps(_mm512_cvtpd_ps(_mm512_maskz_mov_pd(normal, self.0)));
+                Self(_mm512_cvtps_pd(_mm256_div_ps(_mm256_set1_ps(1.0), roots)))
+            }
+        }
     }
 }
 
@@ -213,7 +246,8 @@ mod tests {
                 let (a, b) = (V::new(std::array::from_fn(|l| all[(n + l) % all.len()])), V::splat(all[n]));
                 // What is no number has no sign to rely on.
                 let plain = |x: f64| if x.is_nan() { 1 } else { x.to_bits() };
-                bits.extend([a.add(b), a.sub(b), a.mul(b)].into_iter().flat_map(V::lanes).map(plain));
+                let roots = [a, a.mul(a), V::splat(f64::from(f32::MIN_POSITIVE)).mul(a)].map(V::rough_inverse_root);
+                bits.extend([a.add(b), a.sub(b), a.mul(b)].into_iter().chain(roots).flat_map(V::lanes).map(plain));
             }
             bits
         }

@@ -15,17 +15,13 @@ const WORTH_THREADS: usize = 1 << 17;
 /// A mass as grains see it, in scaled lengths.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Source<const D: usize> {
-    position: Vector<D>,
-    strength: f64,
+    pub(super) position: Vector<D>,
+    pub(super) strength: f64,
 }
 
 impl<const D: usize> Source<D> {
     pub(super) fn new(constant: f64, scale: Scale, position: Vector<D>, mass: f64) -> Self {
         Self { position: position * scale.length, strength: constant * mass * scale.acceleration() }
-    }
-
-    pub(super) fn coordinates(&self) -> [f64; D] {
-        self.position.0
     }
 }
 
@@ -55,34 +51,7 @@ pub(super) fn attract_grains<const D: usize>(
     }
 }
 
-/// Adds the pulls of all sources on the first `count` grains: squares of distances and guesses of their roots first, then what follows
-/// from these. Merged into one loop, they hide the lanes from a compiler.
-#[inline(always)]
-pub(super) fn pull<const D: usize, const BLOCK: usize>(
-    sources: &[Source<D>],
-    softening_squared: f64,
-    count: usize,
-    places: &[[f64; BLOCK]; D],
-    pulls: &mut [[f64; BLOCK]; D],
-) {
-    let mut squares = [0.0; BLOCK];
-    let mut guesses = [0.0f32; BLOCK];
-    for source in sources {
-        for i in 0..count {
-            let arrow: [f64; D] = std::array::from_fn(|k| source.position[k] - places[k][i]);
-            squares[i] = arrow.iter().fold(softening_squared, |sum, x| sum + x * x);
-            guesses[i] = guess(squares[i]);
-        }
-        for i in 0..count {
-            let pull = source.strength * inverse_cube_of_root(squares[i], guesses[i]);
-            for k in 0..D {
-                pulls[k][i] += pull * (source.position[k] - places[k][i]);
-            }
-        }
-    }
-}
-
-/// Blocks are laid out in lanes, attracted, and read back.
+/// Blocks are laid out in lanes, attracted, and read back, in three loops: merged, they hide the lanes from a compiler.
 struct Attraction<'a, const D: usize> {
     sources: &'a [Source<D>],
     length: f64,
@@ -99,6 +68,8 @@ impl<const D: usize> Kernel for Attraction<'_, D> {
     fn run(self) {
         let Self { sources, length, softening_squared, position, mass, acceleration } = self;
         let mut places = [[0.0; BLOCK]; D];
+        let mut squares = [0.0; BLOCK];
+        let mut guesses = [0.0f32; BLOCK];
         let blocks = position.chunks(BLOCK).zip(mass.chunks(BLOCK)).zip(acceleration.chunks_mut(BLOCK));
         for ((position, mass), acceleration) in blocks {
             for (i, r) in position.iter().enumerate() {
@@ -107,7 +78,19 @@ impl<const D: usize> Kernel for Attraction<'_, D> {
                 }
             }
             let mut pulls = [[0.0; BLOCK]; D];
-            pull(sources, softening_squared, position.len().min(BLOCK), &places, &mut pulls);
+            for source in sources {
+                for i in 0..position.len() {
+                    let arrow: [f64; D] = std::array::from_fn(|k| source.position[k] - places[k][i]);
+                    squares[i] = arrow.iter().fold(softening_squared, |sum, x| sum + x * x);
+                    guesses[i] = guess(squares[i]);
+                }
+                for i in 0..position.len() {
+                    let pull = source.strength * inverse_cube_of_root(squares[i], guesses[i]);
+                    for k in 0..D {
+                        pulls[k][i] += pull * (source.position[k] - places[k][i]);
+                    }
+                }
+            }
             // A mass among the grains has met itself: its pull is no number.
             if mass.iter().fold(0, |bits, mass| bits | mass.to_bits()) == 0 {
                 for (i, a) in acceleration.iter_mut().enumerate() {

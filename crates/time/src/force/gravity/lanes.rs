@@ -3,6 +3,8 @@
 //! A loop over `[f64; LANES]` becomes one, two or four vector instructions, as wide as the processor allows; every lane
 //! does the same operations whatever the width, so the choice made at run time shows in the time only.
 
+use crate::lanes::eight::Eight;
+
 /// Number of virtual lanes.
 pub(super) const LANES: usize = 8;
 
@@ -35,6 +37,15 @@ pub(super) fn inverse_cube_of_root(x: f64, guess: f32) -> f64 {
     let square = y * y;
     let e = 1.0 - x * square;
     (y * square) * (1.0 + e * (1.5 + 1.875 * e))
+}
+
+/// The same of eight numbers.
+#[inline(always)]
+pub(super) fn inverse_cube_from<V: Eight>(x: V, guess: V) -> V {
+    let square = guess.mul(guess);
+    let e = V::splat(1.0).sub(x.mul(square));
+    let series = V::splat(1.0).add(e.mul(V::splat(1.5).add(V::splat(1.875).mul(e))));
+    guess.mul(square).mul(series)
 }
 
 /// `x^(-1/2)` from the [`guess`] `y` for the same `x`, as [`inverse_cube_of_root`] does it:

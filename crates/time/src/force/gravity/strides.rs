@@ -3,13 +3,13 @@
 //! Grains feel the masses and nobody feels them: where the masses will be is known without them, and so any number of steps can be
 //! taken with some grains, which stay in the nearest cache meanwhile, before the next are looked at.
 
-use corpuscle_core::instructions::{Kernel, larger};
 use corpuscle_core::{Axis, Boundary, Particles, Vector};
 
-use super::grains::{Source, pull};
-use super::lanes::LANES;
+use super::grains::Source;
+use super::lanes::inverse_cube_from;
 use super::scale::Scale;
 use super::{FEW, Gravity};
+use crate::lanes::eight::{self, Eight, InEights, LANES};
 use crate::motion::{self, Moves, Stride, both};
 use crate::strider::{Progress, State, Strider};
 use crate::threads;
@@ -22,13 +22,17 @@ const AT_ONCE: usize = 64;
 const FEWEST: usize = 3;
 /// Grains to each mass, at least.
 const GRAINS_TO_A_MASS: usize = 16;
+/// The most masses: what is known of each from each grain has to stay in a cache.
+const MOST_MASSES: usize = 16;
+/// Scaled coordinates and distances from the first mass beyond this may have squares too large for single precision.
+const FAR: f64 = (1u64 << 60) as f64;
 /// Pulls from which more than one thread is worth waking.
 const WORTH_THREADS: usize = 1 << 17;
 
 impl<const D: usize> Strider<D> for Gravity<D> {
     fn strides_at_once(&self, boundary: &Boundary<D>, particles: &Particles<D>, held: usize) -> usize {
         let masses = particles.mass.iter().filter(|mass| **mass > 0.0).count();
-        let worth_it = particles.len() > FEW && GRAINS_TO_A_MASS * masses <= particles.len();
+        let worth_it = particles.len() > FEW && (1..=MOST_MASSES).contains(&masses) && GRAINS_TO_A_MASS * masses <= particles.len();
         if worth_it && boundary.axes == [Axis::Open; D] && held == 0 { AT_ONCE } else { 0 }
     }
 
@@ -44,7 +48,7 @@ impl<const D: usize> Strider<D> for Gravity<D> {
         }
         let (tracks, finite) = self.lead(&mut masses, strides);
 
-        let scale = Scale::new(self.softening, position, self.instructions);
+        let scale = Scale::new(self.softening, position, self.instructions).coarser();
         let sources = self.sources(&tracks, scale);
         let follow = |((position, velocity), mass): ((&mut [Vector<D>], &mut [Vector<D>]), &[f64])| {
             let mut grains = Grains { position, velocity, mass };
@@ -85,7 +89,7 @@ impl<const D: usize> Gravity<D> {
 
     fn follow(&self, grains: &mut Grains<'_, D>, sources: &[Source<D>], strides: &[Stride], scale: Scale) -> Outcome {
         let (length, softening_squared) = (scale.length, self.softening_squared(scale));
-        self.instructions.run(Follow { grains, sources, strides, length, softening_squared })
+        eight::run(self.instructions, Follow { grains, sources, strides, length, softening_squared })
     }
 }
 
@@ -123,54 +127,117 @@ struct Follow<'a, 'b, const D: usize> {
     softening_squared: f64,
 }
 
-impl<const D: usize> Kernel for Follow<'_, '_, D> {
+/// The square of the distance from a mass, and a guess of its inverse root: made for all grains of a block before they are used, as
+/// there is long to wait for it.
+#[derive(Clone, Copy, Default)]
+struct Look {
+    square: Group,
+    guess: Group,
+}
+
+/// A number of each of so many grains.
+type Group = [f64; LANES];
+
+impl<const D: usize> Follow<'_, '_, D> {
+    /// Looks at all masses from the places of a group; the square of the distance to the first.
+    #[inline(always)]
+    fn look<V: Eight>(&self, sources: &[Source<D>], r: &[V; D], looks: &mut [Look]) -> V {
+        let mut first = V::splat(0.0);
+        for (number, (source, look)) in sources.iter().zip(looks).enumerate() {
+            let mut square = V::splat(self.softening_squared);
+            for k in 0..D {
+                let x = V::splat(source.position[k]).sub(r[k].mul(V::splat(self.length)));
+                square = square.add(x.mul(x));
+            }
+            if number == 0 {
+                first = square;
+            }
+            *look = Look { square: square.lanes(), guess: square.rough_inverse_root().lanes() };
+        }
+        first
+    }
+
+    /// Adds up the pulls of all masses.
+    #[inline(always)]
+    fn pulls<V: Eight>(&self, sources: &[Source<D>], r: &[V; D], looks: &[Look]) -> [V; D] {
+        let mut pulls = [V::splat(0.0); D];
+        for (source, look) in sources.iter().zip(looks) {
+            let cube = inverse_cube_from(V::new(look.square), V::new(look.guess));
+            let pull = V::splat(source.strength).mul(cube);
+            for k in 0..D {
+                let arrow = V::splat(source.position[k]).sub(r[k].mul(V::splat(self.length)));
+                pulls[k] = pulls[k].add(pull.mul(arrow));
+            }
+        }
+        pulls
+    }
+}
+
+impl<const D: usize> InEights for Follow<'_, '_, D> {
     type Output = Outcome;
 
     #[inline(always)]
-    fn run(self) -> Outcome {
-        let Self { grains: Grains { position, velocity, mass }, sources, strides, length, softening_squared } = self;
-        let count = position.len().min(BLOCK);
-        let (mut r, mut v, mut scaled) = ([[0.0; BLOCK]; D], [[0.0; BLOCK]; D], [[0.0; BLOCK]; D]);
+    fn run<V: Eight>(self) -> Outcome {
+        const GROUPS: usize = BLOCK / LANES;
+        let (count, masses) = (self.grains.mass.len(), self.sources.len() / self.strides.len());
+        let (mut places, mut velocities) = ([[[0.0; LANES]; D]; GROUPS], [[[0.0; LANES]; D]; GROUPS]);
         for i in 0..count {
             for k in 0..D {
-                (r[k][i], v[k][i]) = (position[i][k], velocity[i][k]);
+                places[i / LANES][k][i % LANES] = self.grains.position[i][k];
+                velocities[i / LANES][k][i % LANES] = self.grains.velocity[i][k];
             }
         }
-        let mut highest = [0.0; LANES];
-        for (stride, sources) in strides.iter().zip(sources.chunks_exact(sources.len() / strides.len())) {
+        let groups = count.div_ceil(LANES);
+        let mut looks = vec![Look::default(); groups * masses];
+        let mut far = [[0.0; LANES]; GROUPS];
+        for (group, looks) in looks.chunks_exact_mut(masses).enumerate() {
+            far[group] = self.look(&self.sources[..masses], &load::<V, D>(&places[group]), looks).lanes();
+        }
+        for (number, stride) in self.strides.iter().enumerate() {
             let Moves { owed, kick, drift } = stride.moves;
-            for k in 0..D {
-                for (scaled, r) in scaled[k].as_chunks_mut::<LANES>().0.iter_mut().zip(r[k].as_chunks::<LANES>().0) {
-                    for lane in 0..LANES {
-                        scaled[lane] = r[lane] * length;
-                        highest[lane] = larger(scaled[lane].abs(), highest[lane]);
+            let (now, later) = self.sources[number * masses..].split_at(masses);
+            for (group, looks) in looks.chunks_exact_mut(masses).enumerate() {
+                let (mut r, mut v) = (load::<V, D>(&places[group]), load::<V, D>(&velocities[group]));
+                let a = self.pulls(now, &r, looks);
+                for k in 0..D {
+                    if let Some(owed) = owed {
+                        v[k] = v[k].add(a[k].mul(V::splat(owed)));
                     }
+                    v[k] = v[k].add(a[k].mul(V::splat(kick)));
+                    r[k] = r[k].add(v[k].mul(V::splat(drift)));
+                    (places[group][k], velocities[group][k]) = (r[k].lanes(), v[k].lanes());
                 }
-            }
-            let mut pulls = [[0.0; BLOCK]; D];
-            pull(sources, softening_squared, count, &scaled, &mut pulls);
-            for k in 0..D {
-                if let Some(owed) = owed {
-                    for i in 0..count {
-                        v[k][i] += pulls[k][i] * owed;
-                    }
-                }
-                for i in 0..count {
-                    v[k][i] += pulls[k][i] * kick;
-                    r[k][i] += v[k][i] * drift;
+                if let Some(next) = later.get(..masses) {
+                    far[group] = V::new(far[group]).add(self.look(next, &r, looks)).lanes();
                 }
             }
         }
-        let places = highest.into_iter().chain(sources.iter().flat_map(Source::coordinates));
-        if places.into_iter().any(|x| Scale::OUTSIDE < x.abs() && x.is_finite()) {
+        let Grains { position, velocity, mass } = self.grains;
+        // A mass among the grains has met itself.
+        let grains = || (0..count).filter(|&i| mass[i] == 0.0);
+        let place = |i: usize| Vector::<D>::from_fn(|k| places[i / LANES][k][i % LANES]);
+        let is_far = |i: usize| !(far[i / LANES][i % LANES] < FAR * FAR) && place(i).is_finite();
+        let mut coordinates = self.sources.iter().flat_map(|source| source.position.0);
+        if coordinates.any(|x| FAR < x.abs() && x.is_finite()) || grains().any(is_far) {
             return Outcome::TooFar;
         }
-        // A mass among the grains has met itself. Whoever is nowhere stays there.
-        let mut finite = true;
-        for i in (0..count).filter(|&i| mass[i] == 0.0) {
-            (position[i], velocity[i]) = (Vector::from_fn(|k| r[k][i]), Vector::from_fn(|k| v[k][i]));
-            finite &= position[i].is_finite() && velocity[i].is_finite();
+        let mut outcome = Outcome::Finite;
+        for i in grains() {
+            (position[i], velocity[i]) = (place(i), Vector::from_fn(|k| velocities[i / LANES][k][i % LANES]));
+            if !(position[i].is_finite() && velocity[i].is_finite()) {
+                outcome = Outcome::Lost; // and stays there
+            }
         }
-        if finite { Outcome::Finite } else { Outcome::Lost }
+        outcome
     }
+}
+
+/// The numbers of a group of grains.
+#[inline(always)]
+fn load<V: Eight, const D: usize>(group: &[Group; D]) -> [V; D] {
+    let mut numbers = [V::splat(0.0); D];
+    for k in 0..D {
+        numbers[k] = V::new(group[k]);
+    }
+    numbers
 }
