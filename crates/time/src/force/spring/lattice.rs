@@ -80,15 +80,17 @@ impl Lattice {
     pub(super) fn accelerate<const D: usize>(&self, particles: &Particles<D>, acceleration: &mut [Vector<D>]) {
         let Particles { position, mass, .. } = particles;
         let one = |(number, acceleration): (usize, &mut [Vector<D>])| {
-            let (mut inverse_mass, mut first) = (InverseMass::<D>::new(), self.first_stretch(number * CHUNK));
+            let from = number * CHUNK;
+            let mut inverse_mass = InverseMass::<D>::new(&mass[from..from + acceleration.len()], BLOCK);
+            let mut first = self.first_stretch(from);
             for (block, acceleration) in acceleration.chunks_mut(BLOCK).enumerate() {
-                let start = number * CHUNK + block * BLOCK;
+                let start = from + block * BLOCK;
                 let end = start + acceleration.len();
-                inverse_mass.see(&mass[start..end]);
+                inverse_mass.see(start - from..end - from);
                 for (piece, neighbours) in self.pieces(start..end, &mut first) {
                     let of_piece = Vector::components_mut(&mut acceleration[piece.start - start..piece.end - start]);
                     let inverse_mass = inverse_mass.from(piece.start - start);
-                    let place = Place { position, room: position.len(), own: piece.start, inverse_mass };
+                    let place = Place { around: Around { position, own: piece.start }, inverse_mass };
                     self.gather(neighbours, place, Add(of_piece));
                 }
             }
@@ -150,32 +152,48 @@ impl Lattice {
         place: Place<'_, D>,
         sink: S,
     ) -> S::Output {
-        let Place { position, own, inverse_mass, .. } = place;
-        let components = |first: usize| &Vector::components(&position[first..])[..sink.len()];
-        let near = neighbours.map(|neighbour| components(place.at(neighbour.offset)));
+        let Place { around, inverse_mass } = place;
+        let components = |first: usize| &Vector::components(&around.position[first..])[..sink.len()];
+        let near = neighbours.map(|neighbour| components(around.at(neighbour.offset)));
         let stiffness = neighbours.map(|neighbour| neighbour.stiffness);
         let inverse_mass = &inverse_mass[..sink.len()];
-        eight::run(self.instructions, Gather { stiffness, near, own: components(own), inverse_mass, sink })
+        eight::run(self.instructions, Gather { stiffness, near, own: components(around.own), inverse_mass, sink })
     }
 }
 
-/// Where the particles of a piece are, and their neighbours.
+/// The particles of a piece.
 #[derive(Clone, Copy)]
 pub(super) struct Place<'a, const D: usize> {
-    pub(super) position: &'a [Vector<D>],
-    /// After so many positions they follow from the first on again.
-    pub(super) room: usize,
-    /// Which of these positions is that of the first particle.
-    pub(super) own: usize,
+    pub(super) around: Around<'a, D>,
     /// For each component.
     pub(super) inverse_mass: &'a [f64],
 }
 
-impl<const D: usize> Place<'_, D> {
+/// Where particles that follow one another are, and their neighbours.
+#[derive(Clone, Copy)]
+pub(super) struct Around<'a, const D: usize> {
+    /// After the last they follow from the first on again.
+    pub(super) position: &'a [Vector<D>],
+    /// Which of these positions is that of the first particle.
+    pub(super) own: usize,
+}
+
+impl<const D: usize> Around<'_, D> {
+    /// Without the first few, which are in one piece.
+    pub(super) fn from(self, first: usize) -> Self {
+        Self { own: self.own + first, ..self }
+    }
+
+    /// So many particles have their neighbours in one piece.
+    pub(super) fn straight(self, neighbours: &[Neighbour]) -> usize {
+        let count = self.position.len();
+        neighbours.iter().map(|neighbour| count - self.at(neighbour.offset)).fold(count - self.own, usize::min)
+    }
+
     /// Where the position is that is so much farther on in memory.
     #[inline]
-    fn at(&self, offset: isize) -> usize {
-        let (at, room) = (self.own as isize + offset, self.room as isize);
+    fn at(self, offset: isize) -> usize {
+        let (at, room) = (self.own as isize + offset, self.position.len() as isize);
         (at + if at < 0 {
             room
         } else if at < room {
@@ -187,30 +205,44 @@ impl<const D: usize> Place<'_, D> {
 }
 
 /// `1/m` for each component of the particles of a block; 0 without mass, which nothing pulls at.
-pub(super) struct InverseMass<const D: usize> {
+pub(super) struct InverseMass<'a, const D: usize> {
+    mass: &'a [f64],
     components: Vec<[f64; D]>,
     /// The mass they are all of, if they are.
     alike: Option<f64>,
+    /// Whether that is the mass of all particles. Most chains and membranes are of equal masses: nothing is to be done then.
+    all: bool,
 }
 
-impl<const D: usize> InverseMass<D> {
-    pub(super) fn new() -> Self {
-        Self { components: vec![], alike: None }
+impl<'a, const D: usize> InverseMass<'a, D> {
+    /// For blocks of at most so many of particles of these masses.
+    pub(super) fn new(mass: &'a [f64], block: usize) -> Self {
+        let mut seen = Self { mass, components: vec![], alike: None, all: false };
+        if let Some(alike) = alike(mass) {
+            seen.take_in(&mass[..block.min(mass.len())], Some(alike));
+            seen.all = true;
+        }
+        seen
     }
 
-    /// Takes in the masses of a block. Most chains and membranes are of equal masses: nothing is to be done then but to see that.
-    pub(super) fn see(&mut self, mass: &[f64]) {
-        let first = mass[0];
-        let differences = mass.iter().fold(0, |bits, mass| bits | (mass.to_bits() ^ first.to_bits()));
-        let alike = (differences == 0).then_some(first);
-        if alike.is_some() && alike == self.alike && mass.len() <= self.components.len() {
+    /// Takes in the masses of a block.
+    pub(super) fn see(&mut self, block: Range<usize>) {
+        if self.all {
             return;
         }
+        let mass = &self.mass[block];
+        let alike = alike(mass);
+        if alike.is_none() || alike != self.alike || mass.len() > self.components.len() {
+            self.take_in(mass, alike);
+        }
+    }
+
+    fn take_in(&mut self, mass: &[f64], alike: Option<f64>) {
         self.alike = alike;
         let inverse = |mass: f64| if mass == 0.0 { 0.0 } else { 1.0 / mass };
         self.components.clear();
-        if alike.is_some() {
-            self.components.resize(mass.len(), [inverse(first); D]);
+        if let Some(alike) = alike {
+            self.components.resize(mass.len(), [inverse(alike); D]);
         } else {
             self.components.extend(mass.iter().map(|&mass| [inverse(mass); D]));
         }
@@ -219,4 +251,11 @@ impl<const D: usize> InverseMass<D> {
     pub(super) fn from(&self, particle: usize) -> &[f64] {
         self.components[particle..].as_flattened()
     }
+}
+
+/// The one mass that all of these are.
+fn alike(mass: &[f64]) -> Option<f64> {
+    let &first = mass.first()?;
+    let differences = mass.iter().fold(0, |bits, mass| bits | (mass.to_bits() ^ first.to_bits()));
+    (differences == 0).then_some(first)
 }

@@ -7,7 +7,7 @@
 use corpuscle_core::{Particles, Vector};
 
 use super::gather::Move;
-use super::lattice::{BLOCK, InverseMass, Lattice, Place};
+use super::lattice::{Around, InverseMass, Lattice, Place};
 use super::ring::Ring;
 use super::sweep::{Sweep, in_parts};
 use crate::constraint::Held;
@@ -15,19 +15,26 @@ use crate::motion::{Stride, both};
 
 /// The most strides in a sweep.
 const MOST: usize = 8;
-/// Bytes that may be at work: half of a second cache, as small as they are.
-const AT_WORK: usize = 512 << 10;
+/// Bytes that may be at work: a second cache.
+const AT_WORK: usize = 1 << 20;
+/// Particles handled together are a multiple of these.
+const BLOCK: usize = 256;
 
 impl Lattice {
     /// How many strides of so many particles should be taken at once: as many as keep what is between the first and the last in a
     /// cache, and one where all particles are in a cache anyway.
     pub(super) fn strides_at_once<const D: usize>(&self, particles: usize) -> usize {
         let particle = size_of::<Vector<D>>();
-        if 2 * particle * particles <= AT_WORK {
+        if 2 * particle * particles <= AT_WORK / 2 {
             return 1;
         }
-        // A ring is twice as long as one sweep is behind the next, and so are the positions and velocities between them.
-        (AT_WORK / (4 * particle * (self.reach + BLOCK))).clamp(1, MOST)
+        // Three blocks are in a ring, and the velocities of one are between a stride and the next.
+        (AT_WORK / (4 * particle * self.block())).clamp(1, MOST)
+    }
+
+    /// Particles handled together: no spring reaches beyond the next block.
+    fn block(&self) -> usize {
+        self.reach.max(1).next_multiple_of(BLOCK)
     }
 
     /// Takes these strides, one after the other; tells what [`kick_and_drift`](crate::motion::kick_and_drift)
@@ -35,7 +42,7 @@ impl Lattice {
     pub(super) fn sweep<const D: usize>(&self, particles: &mut Particles<D>, held: &[Held], strides: &[Stride]) -> [bool; 2] {
         let Particles { position, velocity, mass, .. } = particles;
         let sweep = Gathering { lattice: self, mass, held, strides };
-        in_parts(&sweep, position, velocity, BLOCK, self.reach)
+        in_parts(&sweep, position, velocity, self.block(), self.reach)
     }
 }
 
@@ -90,34 +97,41 @@ impl<const D: usize> Sweep<D> for Gathering<'_> {
     ) -> [bool; 2] {
         let count = position.len();
         let mut passes: Vec<_> = self.strides.iter().map(|&stride| Pass::new(*self, stride, from)).collect();
-        let length = BLOCK.min(count);
+        let length = self.lattice.block().min(count.max(self.lattice.reach));
+        let blocks = count.div_ceil(length);
         // The particles of a block.
         let block = |number: usize| (number * length).min(count)..((number + 1) * length).min(count);
-        let ring = |number| Ring::new(length, self.lattice.reach, beside(before, number, 0));
+        // Whether a block is one of the first or the last so many.
+        let outer = |number: usize, many: usize| number < many || number + many >= blocks;
+        let ring = |number| Ring::new(length, beside(before, number, 0));
         let mut rings: Vec<_> = (0..passes.len()).map(ring).collect();
-        // By how many blocks one pass is behind the other.
-        let behind = self.lattice.reach.div_ceil(length);
-        let mut finite = [true; 2];
-        for front in 0..count.div_ceil(length) + passes.len() * behind {
+        let mut inverse_mass = InverseMass::new(&self.mass[from..from + count], length);
+        let (alone, mut finite) = (passes.len() == 1, [true; 2]);
+        for front in 0..blocks + passes.len() {
             let coming = block(front);
-            rings[0].put(coming.start, &position[coming.clone()]);
-            rings[0].put_after(front, count, beside(after, 0, 1));
+            if alone || outer(front, 3) {
+                rings[0].open(coming.clone()).copy_from_slice(&position[coming.clone()]);
+                rings[0].put_after(front, count, beside(after, 0, 1));
+            }
             let (position, later) = position.split_at_mut(coming.end);
             for (number, pass) in passes.iter_mut().enumerate() {
-                let Some(now) = front.checked_sub((number + 1) * behind) else { break };
+                let Some(now) = front.checked_sub(number + 1) else { break };
                 let particles = block(now);
                 let (velocity, later_velocity) = velocity.split_at_mut(particles.end);
                 let velocity = &mut velocity[particles.start..];
                 let soon = if number == 0 { [&*later, &*later_velocity] } else { [&[][..]; 2] };
                 let (done, rest) = rings.split_at_mut(number + 1);
-                let ring = &done[number];
+                let in_ring = done[number].around(particles.start);
                 let moved = if let Some(next) = rest.first_mut() {
-                    let moved = pass.take(ring, particles.start, next.open(particles.clone()), velocity, soon);
-                    next.close(particles);
+                    // Positions are overwritten by the last stride, behind the others: before the first, neighbours are where they
+                    // belong, but beyond a seam.
+                    let in_place = number == 0 && !outer(now, 2);
+                    let around = if in_place { Around { position, own: particles.start } } else { in_ring };
+                    let moved = pass.take(around, particles.start, &mut inverse_mass, next.open(particles.clone()), velocity, soon);
                     next.put_after(now, count, beside(after, number + 1, 1));
                     moved
                 } else {
-                    pass.take(ring, particles.start, &mut position[particles.clone()], velocity, soon)
+                    pass.take(in_ring, particles.start, &mut inverse_mass, &mut position[particles], velocity, soon)
                 };
                 finite = both(finite, moved);
             }
@@ -132,29 +146,28 @@ fn beside<const D: usize>(seam: &Seam<D>, number: usize, side: usize) -> &[Vecto
 }
 
 /// One stride on its way through a part of the memory.
-struct Pass<'a, const D: usize> {
+struct Pass<'a> {
     lattice: &'a Lattice,
-    mass: &'a [f64],
     /// What is held of the particles still to come.
     held: &'a [Held],
     stride: Stride,
     /// The first particle of the part.
     from: usize,
     stretch: usize,
-    inverse_mass: InverseMass<D>,
 }
 
-impl<'a, const D: usize> Pass<'a, D> {
-    fn new(Gathering { lattice, mass, held, .. }: Gathering<'a>, stride: Stride, from: usize) -> Self {
+impl<'a> Pass<'a> {
+    fn new(Gathering { lattice, held, .. }: Gathering<'a>, stride: Stride, from: usize) -> Self {
         let held = &held[held.partition_point(|held| held.particle < from)..];
-        Self { lattice, mass, held, stride, from, stretch: lattice.first_stretch(from), inverse_mass: InverseMass::new() }
+        Self { lattice, held, stride, from, stretch: lattice.first_stretch(from) }
     }
 
     /// Moves the next particles, from `start` of the part on, to `position`.
-    fn take(
+    fn take<const D: usize>(
         &mut self,
-        ring: &Ring<D>,
+        around: Around<'_, D>,
         start: usize,
+        inverse_mass: &mut InverseMass<'_, D>,
         position: &mut [Vector<D>],
         velocity: &mut [Vector<D>],
         soon: [&[Vector<D>]; 2],
@@ -166,22 +179,22 @@ impl<'a, const D: usize> Pass<'a, D> {
         if particles.is_empty() {
             return finite;
         }
-        self.inverse_mass.see(&self.mass[particles.clone()]);
+        inverse_mass.see(start..start + position.len());
         for (piece, neighbours) in self.lattice.pieces(particles.clone(), &mut self.stretch) {
-            let own = piece.start - first..piece.end - first;
-            let place = Place {
-                position: ring.places(),
-                room: ring.room(),
-                own: ring.at(start + own.start),
-                inverse_mass: self.inverse_mass.from(own.start),
-            };
-            let soon = soon.map(|soon| soon.get(own.start..).unwrap_or(&[]));
-            let (position, velocity) = (&mut position[own.clone()], &mut velocity[own]);
-            let moved = match moves.owed {
-                Some(_) => self.lattice.gather(neighbours, place, Move::<true>::new(position, velocity, soon, moves)),
-                None => self.lattice.gather(neighbours, place, Move::<false>::new(position, velocity, soon, moves)),
-            };
-            finite = both(finite, moved);
+            let (mut start, end) = (piece.start - first, piece.end - first);
+            while start < end {
+                let around = around.from(start);
+                let own = start..end.min(start + around.straight(neighbours));
+                start = own.end;
+                let place = Place { around, inverse_mass: inverse_mass.from(own.start) };
+                let soon = soon.map(|soon| soon.get(own.start..).unwrap_or(&[]));
+                let (position, velocity) = (&mut position[own.clone()], &mut velocity[own]);
+                let moved = match moves.owed {
+                    Some(_) => self.lattice.gather(neighbours, place, Move::<true>::new(position, velocity, soon, moves)),
+                    None => self.lattice.gather(neighbours, place, Move::<false>::new(position, velocity, soon, moves)),
+                };
+                finite = both(finite, moved);
+            }
         }
         let (among, later) = self.held.split_at(self.held.iter().take_while(|held| held.particle < particles.end).count());
         self.held = later;
@@ -205,17 +218,22 @@ mod tests {
     /// known on one side of it than strides reach.
     #[test]
     fn strides_taken_together_in_parts_are_those_taken_alone() {
-        let side = 60;
+        in_parts_and_alone(60, 60);
+        // A row longer than the shortest block.
+        in_parts_and_alone(300, 12);
+    }
+
+    fn in_parts_and_alone(width: usize, height: usize) {
         let mut random = Random::new(7, 0);
         let mut particles = Particles::<3>::new();
         let mut springs = vec![];
-        for i in 0..side * side {
+        for i in 0..width * height {
             let mut vector = || Vector::from_fn(|_| random.normal());
             particles.push(vector(), vector(), if i < 2000 { 1.0 } else { 2.0 }, 0.0, 0);
             springs.extend(
-                [i % side, i / side]
+                [i % width, i / width]
                     .iter()
-                    .zip([1, side])
+                    .zip([1, width])
                     .filter(|(place, _)| **place > 0)
                     .map(|(_, by)| Spring::new(i - by, i, 1.0, 0.0)),
             );
@@ -236,14 +254,14 @@ mod tests {
             gathering(stride).part(&mut alone.position, &mut alone.velocity, &nothing(), &nothing(), 0);
         }
         let together = gathering(&strides);
-        for at in [60, 61, 256, 299, 1024, 3300, 3540] {
+        for at in [width, 301, 256.max(width), 1024, 3300, 3540, 3595] {
             let mut found = particles.clone();
             let seam = together.seam(&found.position, &found.velocity, at);
             let (first, second) = found.position.split_at_mut(at);
             let (first_velocity, second_velocity) = found.velocity.split_at_mut(at);
             assert_eq!(together.part(first, first_velocity, &nothing(), &seam, 0), [true; 2]);
             together.part(second, second_velocity, &seam, &nothing(), at);
-            assert!(found == alone, "seam at {at}");
+            assert!(found == alone, "width {width}, seam at {at}");
         }
     }
 }

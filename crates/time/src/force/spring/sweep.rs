@@ -10,7 +10,7 @@ use crate::motion::both;
 use crate::threads;
 
 /// Parts of the memory a thread: whoever is held up leaves some to the others.
-const PARTS_A_THREAD: usize = 4;
+const PARTS_A_THREAD: usize = 2;
 
 /// A sweep that can be cut into parts.
 pub(super) trait Sweep<const D: usize>: Sync {
