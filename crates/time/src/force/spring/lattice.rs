@@ -184,10 +184,13 @@ impl<const D: usize> Around<'_, D> {
         Self { own: self.own + first, ..self }
     }
 
-    /// So many particles have their neighbours in one piece.
-    pub(super) fn straight(self, neighbours: &[Neighbour]) -> usize {
+    /// Of `most` particles, so many have their neighbours, none farther than `reach`, in one piece.
+    pub(super) fn straight(self, neighbours: &[Neighbour], reach: usize, most: usize) -> usize {
         let count = self.position.len();
-        neighbours.iter().map(|neighbour| count - self.at(neighbour.offset)).fold(count - self.own, usize::min)
+        if self.own >= reach && self.own + most + reach <= count {
+            return most;
+        }
+        neighbours.iter().map(|neighbour| count - self.at(neighbour.offset)).fold(most.min(count - self.own), usize::min)
     }
 
     /// Where the position is that is so much farther on in memory.

@@ -184,7 +184,7 @@ impl<'a> Pass<'a> {
             let (mut start, end) = (piece.start - first, piece.end - first);
             while start < end {
                 let around = around.from(start);
-                let own = start..end.min(start + around.straight(neighbours));
+                let own = start..start + around.straight(neighbours, self.lattice.reach, end - start);
                 start = own.end;
                 let place = Place { around, inverse_mass: inverse_mass.from(own.start) };
                 let soon = soon.map(|soon| soon.get(own.start..).unwrap_or(&[]));
