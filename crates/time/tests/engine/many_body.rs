@@ -229,7 +229,7 @@ fn dust(seed: u64, masses: usize, softening: f64, integrator: Integrator) -> Tim
     let mut bodies = Particles::new();
     for i in 0..400 {
         let mass = if i * masses / 400 == (i + 1) * masses / 400 { 0.0 } else { 0.2 + random.uniform() };
-        let size = if seed % 2 == 0 && i % 37 == 5 { 1e12 } else { 3.0 };
+        let size = if seed.is_multiple_of(2) && i % 37 == 5 { 1e12 } else { 3.0 };
         let speed = if i % 41 == 7 { 1e9 } else { 0.5 };
         bodies.push(Vector::from_fn(|_| size * random.normal()), Vector::from_fn(|_| speed * random.normal()), mass, 0.0, 0);
     }

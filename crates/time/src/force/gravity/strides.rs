@@ -216,9 +216,9 @@ impl<const D: usize> InEights for Follow<'_, '_, D> {
         // A mass among the grains has met itself.
         let grains = || (0..count).filter(|&i| mass[i] == 0.0);
         let place = |i: usize| Vector::<D>::from_fn(|k| places[i / LANES][k][i % LANES]);
-        let is_far = |i: usize| !(far[i / LANES][i % LANES] < FAR * FAR) && place(i).is_finite();
+        let is_near = |i: usize| far[i / LANES][i % LANES] < FAR * FAR || !place(i).is_finite();
         let mut coordinates = self.sources.iter().flat_map(|source| source.position.0);
-        if coordinates.any(|x| FAR < x.abs() && x.is_finite()) || grains().any(is_far) {
+        if coordinates.any(|x| FAR < x.abs() && x.is_finite()) || !grains().all(is_near) {
             return Outcome::TooFar;
         }
         let mut outcome = Outcome::Finite;

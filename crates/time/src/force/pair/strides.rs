@@ -136,12 +136,12 @@ impl<P: PairPotential, const D: usize> PairForce<P, D> {
         let InOrder { parts, next } = order;
         loop {
             let quantum = self.quantum;
-            let one = |((share, next), (rows, pruned_at)): ((&mut Share<D>, &mut [[f64; D]]), (&_, &[[f64; D]]))| {
-                let pairs = Self::pairs(law, boundary, blocks, rows);
+            let one = |(number, (share, next)): (usize, (&mut Share<D>, &mut [[f64; D]]))| {
+                let pairs = Self::pairs(law, boundary, blocks, &shares[number]);
+                let pruned_at = &pruned_at[number * places..][..next.len()];
                 lanes::run(instructions, Foresee { pairs, quantum, boundary, stride, pruned_at, share, next })
             };
-            let lists = shares.iter().zip(pruned_at.chunks(places));
-            let parts = parts.iter_mut().zip(next.chunks_mut(places)).zip(lists);
+            let parts = parts.iter_mut().zip(next.chunks_mut(places)).enumerate();
             let seen = threads::sum(shares.len() > 1, parts, one, Seen::and);
             let bound = seen.scale * cutoff;
             if !(bound + seen.doubt).is_finite() {
@@ -198,7 +198,7 @@ impl<P: PairPotential, const D: usize> PairForce<P, D> {
 }
 
 /// What is seen of a stride.
-#[derive(Default)]
+#[derive(Clone, Copy, Default)]
 struct Seen {
     /// The largest `|U'(r)/r|`.
     scale: f64,
