@@ -1,5 +1,6 @@
 //! Short-range forces between all pairs, from one potential or from a table of them.
 
+mod energies;
 mod kernel;
 mod strides;
 mod tensor;
@@ -14,7 +15,8 @@ use crate::lanes;
 use crate::neighbours::{Blocks, Neighbours, Rows};
 use crate::strider::Strider;
 use crate::threads::{self, CHUNK};
-use kernel::{AddEnergies, AddForces, Law, Pairs, Table, Totals, Uniform};
+use energies::{AddEnergies, Totals};
+use kernel::{AddForces, Law, Pairs, Table, Uniform};
 use strides::InOrder;
 
 /// How far typical pairs are below the bound of the sums' quantum: forces up to `2^14` times energy over length and energies

@@ -1,4 +1,4 @@
-//! The sums over pairs: forces, energy and virial, the four particles of a block against one other at a time.
+//! The sums over pairs, the four particles of a block against one other at a time; and those of forces.
 
 use crate::exact::{BITS, Quantum};
 use crate::image::{NearestImage, NearestImages};
@@ -57,13 +57,13 @@ pub(super) struct Pairs<'a, L, const D: usize> {
 const TOGETHER: usize = 4;
 
 /// The particles of a block, each against `N` others.
-struct Meeting<V, L, const D: usize, const N: usize> {
+pub(super) struct Meeting<V, L, const D: usize, const N: usize> {
     law: L,
     own: [u16; LANES],
     other: [[u16; LANES]; N],
     /// From the others to the block's own.
     arrow: [[V; D]; N],
-    r_squared: [V; N],
+    pub(super) r_squared: [V; N],
 }
 
 impl<V: Lanes, L: Law, const D: usize, const N: usize> Meeting<V, L, D, N> {
@@ -90,7 +90,7 @@ impl<V: Lanes, L: Law, const D: usize, const N: usize> Meeting<V, L, D, N> {
 
     /// `U'(r)/r` of four pairs, with the sign of a repulsion; zero beyond the range.
     #[inline(always)]
-    fn force_over_distance(&self, n: usize) -> V {
+    pub(super) fn force_over_distance(&self, n: usize) -> V {
         let squares = self.r_squared[n].lanes();
         let (mut force, mut range) = ([0.0; LANES], [0.0; LANES]);
         for lane in 0..LANES {
@@ -103,7 +103,7 @@ impl<V: Lanes, L: Law, const D: usize, const N: usize> Meeting<V, L, D, N> {
 
     /// `U(r)` of four pairs, less its value at the range if `shifted`; zero beyond the range.
     #[inline(always)]
-    fn energy(&self, n: usize, shifted: bool) -> V {
+    pub(super) fn energy(&self, n: usize, shifted: bool) -> V {
         let squares = self.r_squared[n].lanes();
         let (mut energy, mut range) = ([0.0; LANES], [0.0; LANES]);
         for lane in 0..LANES {
@@ -116,7 +116,7 @@ impl<V: Lanes, L: Law, const D: usize, const N: usize> Meeting<V, L, D, N> {
 }
 
 /// A sum over the pairs of a block.
-trait Sum<V: Lanes, const D: usize> {
+pub(super) trait Sum<V: Lanes, const D: usize> {
     /// Whether speed matters enough for code of their own for pairs in need of different images. What they do not need changes
     /// no bit.
     const HOT: bool;
@@ -208,13 +208,13 @@ impl<V: Lanes, const D: usize> Block<V, D> {
 }
 
 /// How many times four pairs [`add_up`] counts in a row.
-fn terms(near: &Near<'_>) -> i64 {
+pub(super) fn terms(near: &Near<'_>) -> i64 {
     (LANES - 1 + near.count) as i64
 }
 
 /// Adds all pairs of a block to a sum.
 #[inline(always)]
-fn add_up<V: Lanes, L: Law, S: Sum<V, D>, const D: usize>(
+pub(super) fn add_up<V: Lanes, L: Law, S: Sum<V, D>, const D: usize>(
     pairs: &Pairs<'_, L, D>,
     image: &NearestImages<V, D>,
     block: usize,
@@ -344,78 +344,6 @@ impl<L: Law, const D: usize, const LEVELS: usize> InLanes for AddForces<'_, L, D
     }
 }
 
-fn largest_of(bits: [i64; LANES]) -> f64 {
+pub(super) fn largest_of(bits: [i64; LANES]) -> f64 {
     f64::from_bits(bits.into_iter().max().unwrap_or(0) as u64)
-}
-
-/// Energy and virial of a share, in the finer quanta, every pair twice; and the largest terms of each.
-pub(super) struct Totals {
-    pub(super) total: [i128; 2],
-    pub(super) largest: [f64; 2],
-}
-
-/// Adds up energy and virial of every pair of a share.
-pub(super) struct AddEnergies<'a, L, const D: usize> {
-    pub(super) pairs: Pairs<'a, L, D>,
-    /// Of each sum, and of what its terms leave.
-    pub(super) quanta: [[Quantum; 2]; 2],
-    /// Whether energies are shifted to vanish at the range.
-    pub(super) shifted: bool,
-}
-
-/// Energy and virial of a block, as sums of bits.
-struct Energies<V: Lanes> {
-    shifted: bool,
-    magic: [[V; 2]; 2],
-    bits: [[V::Integers; 2]; 2],
-    most: [V::Integers; 2],
-}
-
-impl<V: Lanes, const D: usize> Sum<V, D> for Energies<V> {
-    const HOT: bool = false;
-
-    #[inline(always)]
-    fn add<L: Law, const N: usize>(&mut self, meeting: &Meeting<V, L, D, N>) {
-        for n in 0..N {
-            let r_squared = meeting.r_squared[n];
-            let terms = [meeting.energy(n, self.shifted), r_squared.mul(meeting.force_over_distance(n))];
-            for number in 0..2 {
-                // Out of range the square may be infinite, and its product with zero no number.
-                let term = terms[number].where_less(r_squared, V::splat(f64::INFINITY));
-                self.most[number] = term.larger_bits(self.most[number]);
-                let mut left = term;
-                for level in 0..2 {
-                    let shifted = left.add(self.magic[number][level]);
-                    self.bits[number][level] = shifted.add_bits(self.bits[number][level]);
-                    left = left.sub(shifted.sub(self.magic[number][level]));
-                }
-            }
-        }
-    }
-}
-
-impl<L: Law, const D: usize> InLanes for AddEnergies<'_, L, D> {
-    type Output = Totals;
-
-    #[inline(always)]
-    fn run<V: Lanes>(self) -> Totals {
-        let Self { pairs, quanta, shifted } = self;
-        let image = pairs.image.in_lanes::<V>();
-        let magic = quanta.map(|levels| [V::splat(levels[0].magic()), V::splat(levels[1].magic())]);
-        let (mut total, mut most) = ([0; 2], [V::zeros(); 2]);
-        for (block, near) in (pairs.rows.first..).zip(pairs.rows.iter()) {
-            let mut sum = Energies { shifted, magic, bits: [[V::zeros(); 2]; 2], most };
-            add_up::<V, L, _, D>(&pairs, &image, block, &near, &mut sum);
-            most = sum.most;
-            let terms = terms(&near);
-            for number in 0..2 {
-                let [coarse, fine] = sum.bits[number].map(V::integers);
-                for lane in 0..LANES {
-                    total[number] += i128::from(coarse[lane].wrapping_sub(quanta[number][0].bias(terms))) << BITS;
-                    total[number] += i128::from(fine[lane].wrapping_sub(quanta[number][1].bias(terms)));
-                }
-            }
-        }
-        Totals { total, largest: most.map(|most| largest_of(V::integers(most))) }
-    }
 }
