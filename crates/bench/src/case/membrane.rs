@@ -33,7 +33,7 @@ const STEP: f64 = 0.1;
 /// the mass in.
 const BYTES: f64 = 104.0;
 /// Masses times steps between two looks at the clock. Where an engine stops, it finds all accelerations once more.
-const WORK_OF_GROUP: usize = 32_000_000;
+const WORK_OF_GROUP: usize = 128_000_000;
 
 /// A mode of a square membrane whose rim is held: `sin(p pi x / L) sin(p pi y / L)`.
 struct Mode {
