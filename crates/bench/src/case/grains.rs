@@ -29,8 +29,8 @@ pub(crate) static CASE: Case = Case {
 const MASSES: [f64; 3] = [1.0, 0.02, 0.01];
 /// Length of a step; a side of the triangle is 1.
 const STEP: f64 = 1e-3;
-/// Particles times steps between two looks at the clock.
-const WORK_OF_GROUP: usize = 1_000_000;
+/// Particles times steps between two looks at the clock. Grains are taken along for many steps where nobody looks.
+const WORK_OF_GROUP: usize = 16_000_000;
 
 /// Three stars on Lagrange's triangle, turning about their centre of mass at `omega = sqrt(M)`, and grains on circles around
 /// all of them, in every direction.
