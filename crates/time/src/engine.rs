@@ -269,8 +269,8 @@ impl<const D: usize> TimeDriven<D> {
     fn advance_fixed<O: Observer<D>>(&mut self, dt: f64, to: f64, observer: &mut O) -> Result<(), Failure> {
         let last = (to / dt + GUARD).floor();
         while (self.steps as f64) < last {
-            if let Err(failure) = self.step_kept(dt) {
-                return self.recover(failure, dt);
+            if self.step_kept(dt).is_err() {
+                self.repeat(self.steps + 1, dt)?;
             }
             let mut flow = ControlFlow::Continue(());
             for contact in self.system.contacts.drain(..) {
@@ -282,29 +282,28 @@ impl<const D: usize> TimeDriven<D> {
                 break;
             }
         }
-        self.settle().or_else(|failure| self.recover(failure, dt))
+        self.settle().or_else(|_| self.repeat(self.steps, dt))
     }
 
-    /// Goes back to the last good state, and fails.
-    fn recover(&mut self, failure: Failure, dt: f64) -> Result<(), Failure> {
+    /// Steps taken together fail together: taken again one by one, up to the one of this number, the first that fails tells so. The
+    /// last good state is left then.
+    fn repeat(&mut self, steps: u64, dt: f64) -> Result<(), Failure> {
         self.system.patience = 1;
-        let failure = self.first_failure(failure, dt);
-        let outcome = self.go_back(failure, dt);
+        let outcome = self.one_by_one(steps, dt).or_else(|failure| self.go_back(failure, dt));
         self.system.patience = usize::MAX;
+        self.system.contacts.clear();
         outcome
     }
 
-    /// Steps taken together fail together: taken again one by one, the first that fails tells so.
-    fn first_failure(&mut self, failure: Failure, dt: f64) -> Failure {
-        let reached = self.steps;
+    /// From the state that was kept last.
+    fn one_by_one(&mut self, steps: u64, dt: f64) -> Result<(), Failure> {
         self.restore();
         self.time = self.steps as f64 * dt;
-        while self.steps <= reached {
-            if let Err(failure) = self.step_fixed(dt) {
-                return failure;
-            }
+        while self.steps < steps {
+            self.step_fixed(dt)?;
+            self.settle()?; // so that it does not depend on who stops where whom a failure names
         }
-        failure
+        Ok(())
     }
 
     fn go_back(&mut self, failure: Failure, dt: f64) -> Result<(), Failure> {
@@ -316,7 +315,6 @@ impl<const D: usize> TimeDriven<D> {
             self.step_fixed(dt)?;
         }
         self.settle()?;
-        self.system.contacts.clear();
         Err(failure)
     }
 

@@ -17,6 +17,8 @@ use rows::{Map, Prune, Search, rounded_up};
 const WORTH_WAKING: usize = 50_000;
 /// Entries from which threads that are awake are worth sharing it.
 const WORTH_SHARING: usize = 4000;
+/// Entries of a share, at least.
+const LEAST_SHARE: usize = 500;
 /// What the first list may hold a block.
 const GUESS: usize = 64;
 /// Shares a thread, where there is more than one: whoever is held up leaves some to the others.
@@ -45,6 +47,8 @@ pub struct Neighbours<const D: usize> {
     share: usize,
     /// Whether one evaluation is worth waking threads for.
     pub(crate) is_large: bool,
+    /// Whether they are awake anyway.
+    pub(crate) awake: bool,
     wide: Vec<Rows>,
     pub(crate) pruned_at: Vec<[f64; D]>,
     built_at: Vec<[f64; D]>,
@@ -66,6 +70,7 @@ impl<const D: usize> Neighbours<D> {
             shares: vec![],
             share: 1,
             is_large: false,
+            awake: false,
             wide: vec![],
             pruned_at: vec![],
             built_at: vec![],
@@ -139,9 +144,9 @@ impl<const D: usize> Neighbours<D> {
         self.share * LANES
     }
 
-    /// Whether threads that are awake share the list.
-    pub(crate) fn are_shared(&self) -> bool {
-        self.shares.len() > 1
+    /// Whether threads are to share what is done with the list.
+    pub(crate) fn is_shared(&self) -> bool {
+        self.shares.len() > 1 && (self.is_large || self.awake)
     }
 
     fn fits(&self, boundary: &Boundary<D>, position: &[Vector<D>]) -> bool {
@@ -165,7 +170,7 @@ impl<const D: usize> Neighbours<D> {
         let (image, places) = (NearestImage::new(boundary), self.places_a_share());
         let shares = before.chunks(places).zip(blocks.position.chunks(places));
         let one = |(before, now)| lanes::run(self.instructions, LargestMoves { image, before, now });
-        threads::sum(self.are_shared(), shares, one, Moved::and).closer_by()
+        threads::sum(self.is_shared(), shares, one, Moved::and).closer_by()
     }
 
     /// The skin `s` of least cost. A force evaluation costs in proportion to the volume within reach, `(r + s)^D`, where `r`
@@ -196,20 +201,21 @@ impl<const D: usize> Neighbours<D> {
         let expected = if self.builds == 0 { GUESS * position.len() / LANES } else { self.len() };
         let threads = if expected < WORTH_SHARING { 1 } else { rayon::current_num_threads() };
         self.is_large = threads > 1 && expected >= WORTH_WAKING;
-        self.blocks = Blocks::sorted(boundary, position, threads > 1);
+        let shared = self.is_large || self.awake && threads > 1;
+        self.blocks = Blocks::sorted(boundary, position, shared);
         let count = self.blocks.count();
-        let most = if threads == 1 { 1 } else { SHARES_A_THREAD * threads };
+        let most = if threads == 1 { 1 } else { (SHARES_A_THREAD * threads).min(expected / LEAST_SHARE) };
         self.share = count.div_ceil(most).max(1);
         let shares = count.div_ceil(self.share);
         self.wide.resize_with(shares, Rows::default);
         self.shares.resize_with(shares, Rows::default);
-        let map = Map::new(boundary, &self.blocks, self.cutoff, self.wide_skin, shares > 1);
+        let map = Map::new(boundary, &self.blocks, self.cutoff, self.wide_skin, shared);
         let (instructions, share) = (self.instructions, self.share);
         let search = |(number, rows): (usize, &mut Rows)| {
             let range = share * number..count.min(share * (number + 1));
             lanes::run(instructions, Search { map: &map, range, rows });
         };
-        threads::for_each(shares > 1, self.wide.iter_mut().enumerate(), search);
+        threads::for_each(shared, self.wide.iter_mut().enumerate(), search);
         self.built_at.clone_from(&self.blocks.position);
         self.built_in = Some((boundary.axes, boundary.lower, boundary.upper));
         self.builds += 1;
@@ -219,11 +225,12 @@ impl<const D: usize> Neighbours<D> {
 
     /// Makes the list from the wider one.
     fn prune(&mut self, boundary: &Boundary<D>) {
+        let shared = self.is_shared();
         let Self { blocks, wide, shares, instructions, .. } = self;
         // Positions outside the box cost no pair here: the nearest image is that of the pair, wherever the two are.
         let (image, reach) = (NearestImage::new(boundary), rounded_up(self.cutoff + self.skin));
         let prune = |(rows, wide): (&mut Rows, &Rows)| lanes::run(*instructions, Prune { image, blocks, reach, wide, rows });
-        threads::for_each(wide.len() > 1, shares.iter_mut().zip(&*wide), prune);
+        threads::for_each(shared, shares.iter_mut().zip(&*wide), prune);
         self.pruned_at.clone_from(&self.blocks.position);
     }
 }

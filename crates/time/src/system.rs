@@ -186,6 +186,8 @@ impl<const D: usize> System<D> {
         if let Some(owed) = self.owed.take() {
             self.accelerate(time, 0.0);
             self.kick(owed);
+        } else {
+            self.catch_up(); // who is told what went wrong asks `check`
         }
     }
 
@@ -229,9 +231,10 @@ impl<const D: usize> System<D> {
         }
         self.doubtful |= finite != [true; 2];
         for stride in due.drain(..).skip(taken) {
-            finite[0] &= self.take(stride);
-            if self.doubtful {
-                break; // and whoever asks is told
+            let taken = self.take(stride);
+            finite[0] &= taken[0];
+            if taken != [true; 2] {
+                break; // all is lost, and whoever asks is told
             }
         }
         self.due = due;
@@ -239,10 +242,9 @@ impl<const D: usize> System<D> {
     }
 
     /// Takes a stride that the force did not take; what it depends on is positions alone.
-    fn take(&mut self, Stride { moves: Moves { owed, kick, drift }, end, confined }: Stride) -> bool {
-        self.owed = owed;
+    fn take(&mut self, Stride { moves, end, confined }: Stride) -> [bool; 2] {
         self.accelerate(end, 0.0);
-        let finite = self.kick_and_drift(kick, drift);
+        let finite = self.make(moves);
         self.hold(end);
         if confined {
             motion::wrap_all(&self.boundary, &mut self.particles.position, &mut self.images);
@@ -254,11 +256,16 @@ impl<const D: usize> System<D> {
     /// velocity a finite number.
     pub(crate) fn kick_and_drift(&mut self, kick: f64, drift: f64) -> bool {
         let moves = Moves { owed: self.owed.take(), kick, drift };
+        self.make(moves)[0]
+    }
+
+    /// Kicks and drifts by the accelerations that are known; tells what [`kick_and_drift`](motion::kick_and_drift) does.
+    fn make(&mut self, moves: Moves) -> [bool; 2] {
         let Particles { position, velocity, .. } = &mut self.particles;
-        let [before, now] = motion::kick_and_drift(position, velocity, &self.acceleration, moves);
-        self.doubtful |= !(before && now);
+        let finite = motion::kick_and_drift(position, velocity, &self.acceleration, moves);
+        self.doubtful |= finite != [true; 2];
         self.fresh = false;
-        before
+        finite
     }
 
     /// Puts held and driven coordinates where they have to be at `time`.

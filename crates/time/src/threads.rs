@@ -1,5 +1,7 @@
 //! When several threads are worth the waiting for the last of them.
 
+use std::cell::Cell;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -42,24 +44,48 @@ pub(crate) fn sum<T: Send, R: Default + Send>(
     }
 }
 
+thread_local! {
+    /// How much work in [`kept_awake`] waits on this thread.
+    static AT_WORK: Cell<usize> = const { Cell::new(0) };
+}
+
 /// Does work of many short passes by the threads of the pool, which look for their shares of the next one without falling asleep
-/// in between. A thread whose processor somebody else needs gives way; what it would have done is done by the others.
+/// in between. A thread whose processor somebody else needs gives way; what it would have done is done by the others. Nobody waits for
+/// a thread that has found something else to do.
 pub(crate) fn kept_awake<T: Send>(work: impl FnOnce() -> T + Send) -> T {
-    let done = AtomicBool::new(false);
-    rayon::scope(|scope| {
-        let (home, done) = (rayon::current_thread_index(), &done);
+    // In the pool, once and for all.
+    rayon::scope(|_| {
+        let shift = Shift::begin();
         for _ in 1..rayon::current_num_threads() {
-            scope.spawn(move |_| look_for_work(home, done));
+            let done = shift.done.clone();
+            rayon::spawn(move || look_for_work(&done));
         }
-        let result = work();
-        done.store(true, Ordering::Relaxed);
-        result
+        work()
     })
 }
 
-/// Until there has been none for a while; not the thread `home`, which may take this up, too, while it waits for a share's end.
-fn look_for_work(home: Option<usize>, done: &AtomicBool) {
-    if rayon::current_thread_index() == home {
+/// From the beginning to the end of some work, whatever the end.
+struct Shift {
+    done: Arc<AtomicBool>,
+}
+
+impl Shift {
+    fn begin() -> Self {
+        AT_WORK.set(AT_WORK.get() + 1);
+        Self { done: Arc::default() }
+    }
+}
+
+impl Drop for Shift {
+    fn drop(&mut self) {
+        AT_WORK.set(AT_WORK.get() - 1);
+        self.done.store(true, Ordering::Relaxed);
+    }
+}
+
+/// Until there has been none for a while; not a thread that took this up while it waits for a share of its own.
+fn look_for_work(done: &AtomicBool) {
+    if AT_WORK.get() > 0 {
         return;
     }
     let mut last = Instant::now();

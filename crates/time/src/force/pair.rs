@@ -220,7 +220,8 @@ impl<P: PairPotential, const D: usize> PairForce<P, D> {
                     lanes::run(instructions, AddEnergies { pairs, quanta, shifted })
                 }
             };
-            let parts: Vec<Totals> = shares.par_iter().map(one).collect();
+            let parts: Vec<Totals> =
+                if self.neighbours.is_large { shares.par_iter().map(one).collect() } else { shares.iter().map(one).collect() };
             let bounds = [0, 1].map(|number| parts.iter().map(|part| part.largest[number]).fold(0.0, larger));
             if !bounds.iter().all(|bound| bound.is_finite()) {
                 return bounds;

@@ -20,6 +20,13 @@ pub(crate) trait Eight: Copy {
 /// Smaller numbers are taken for zero in single precision.
 const SMALLEST: f64 = f32::MIN_POSITIVE as f64;
 
+/// [`Eight::rough_inverse_root`] of one number.
+#[inline(always)]
+pub(crate) fn rough_inverse_root(x: f64) -> f32 {
+    let x = if x < SMALLEST { 0.0 } else { x };
+    1.0 / (x as f32).sqrt()
+}
+
 /// Work on eight lanes, whatever they are made of; [`Kernel`] says what must be inlined.
 pub(crate) trait InEights {
     type Output;
@@ -84,7 +91,7 @@ impl Eight for Array {
     }
     #[inline(always)]
     fn rough_inverse_root(self) -> Self {
-        Self(self.0.map(|x| f64::from(1.0 / (if x < SMALLEST { 0.0 } else { x } as f32).sqrt())))
+        Self(std::array::from_fn(|l| f64::from(rough_inverse_root(self.0[l]))))
     }
 }
 

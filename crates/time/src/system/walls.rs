@@ -10,7 +10,7 @@ impl<const D: usize> System<D> {
     /// `end`. Hits of walls are kept for the observer.
     pub(crate) fn confine(&mut self, end: f64, dt: f64, path: Path) -> Result<(), Failure> {
         if let Some(stride) = self.due.last_mut() {
-            stride.confined = true; // in its turn; whoever puts strides off knows no walls
+            stride.confined = true; // in its turn; strides are put off only where there are no walls
             return Ok(());
         }
         if self.boundary.axes.contains(&Axis::Periodic) {

@@ -1,7 +1,9 @@
 //! Soft spheres: conservation, images, and independence of the neighbour lists over whole runs.
 
 use corpuscle_core::{Axis, Boundary, Engine, Failure, Particles, Random, Vector, placement};
-use corpuscle_time::{Force, Gravity, Integrator, LennardJones, PairForce, Spring, Springs, TimeDriven, WeeksChandlerAndersen};
+use corpuscle_time::{
+    Force, Gravity, Integrator, LennardJones, PairForce, Spring, Springs, TimeDriven, UniformField, WeeksChandlerAndersen,
+};
 use proptest::prelude::*;
 
 const LENNARD_JONES: LennardJones = LennardJones { epsilon: 1.0, sigma: 1.0, cutoff: 2.5 };
@@ -156,14 +158,53 @@ proptest! {
     }
 }
 
-/// A gas at random places, so that forces are of all sizes, some of its particles fast enough for several turns around the box; the
-/// state after each of `stops` equal parts of so many steps, or the failure, and the state then.
+/// How a run is cut up: so many steps in all, and from stop to stop; and whether a second force does nothing, in whose company no
+/// force moves particles by itself.
+#[derive(Clone, Copy)]
+struct Way {
+    steps: u64,
+    every: u64,
+    accompanied: bool,
+}
+
+const ONE_BY_ONE: Way = Way { steps: 60, every: 1, accompanied: true };
+const TOGETHER: Way = Way { steps: 60, every: 60, accompanied: false };
+
+/// The outcome of a run, the steps taken, and places on the path through the images, velocities and images, to the bit.
+type Ending = (Result<(), Failure>, u64, Vec<u64>);
+
+fn go<const D: usize>(
+    boundary: Boundary<D>,
+    particles: Particles<D>,
+    force: Box<dyn Force<D>>,
+    integrator: Integrator,
+    way: Way,
+) -> Ending {
+    let before = particles.position.clone();
+    let mut forces = vec![force];
+    if way.accompanied {
+        forces.push(Box::new(UniformField::new(Vector::ZERO)));
+    }
+    let mut engine = TimeDriven::new(boundary, particles, forces, integrator).unwrap();
+    let dt = integrator.dt().unwrap();
+    let mut outcome = Ok(());
+    while outcome.is_ok() && engine.steps() < way.steps {
+        outcome = engine.advance((engine.steps() + way.every).min(way.steps) as f64 * dt, &mut ());
+    }
+    assert!(engine.steps() == 0 || engine.particles().position != before, "{} steps, and nobody has moved", engine.steps());
+    let Particles { position, velocity, .. } = engine.particles();
+    let numbers = position.iter().chain(velocity).flat_map(|vector| vector.0).map(f64::to_bits);
+    let images = (0..position.len()).flat_map(|i| engine.images(i)).map(|image| image as u64);
+    (outcome, engine.steps(), numbers.chain(images).collect())
+}
+
+/// A gas at random places, so that forces are of all sizes, some of its particles fast enough for several turns around the box.
 fn hot_gas<const D: usize>(
     (count, side, seed): (usize, f64, u64),
     axes: [Axis; D],
     (kinds, integrator): (u16, Integrator),
-    (steps, every): (u64, u64),
-) -> (Result<(), Failure>, u64, Particles<D>, Vec<[i64; D]>) {
+    way: Way,
+) -> Ending {
     let boundary = Boundary { axes, ..Boundary::new([-1.0; D], [side - 1.0; D], Axis::Open) };
     let mut random = Random::new(seed, 0);
     let mut particles = Particles::new();
@@ -175,14 +216,7 @@ fn hot_gas<const D: usize>(
     }
     let potential = |a: u16, b: u16| WeeksChandlerAndersen::new(1.0 / f64::from(1 + a + b), 0.8 + 0.1 * f64::from(a.min(b)));
     let force = if kinds == 1 { PairForce::new(potential(0, 0)) } else { PairForce::between_species(kinds, potential) };
-    let mut engine = TimeDriven::new(boundary, particles, vec![Box::new(force)], integrator).unwrap();
-    let dt = integrator.dt().unwrap();
-    let mut outcome = Ok(());
-    while outcome.is_ok() && engine.steps() < steps {
-        outcome = engine.advance((engine.steps() + every).min(steps) as f64 * dt, &mut ());
-    }
-    let images = (0..count).map(|i| engine.images(i)).collect();
-    (outcome, engine.steps(), engine.snapshot(), images)
+    go(boundary, particles, Box::new(force), integrator, way)
 }
 
 proptest! {
@@ -202,29 +236,27 @@ proptest! {
     ) {
         let axes = periodic.map(|periodic| if periodic { Axis::Periodic } else { Axis::Open });
         let law = (kinds, Integrator::from_name(integrator, dt).unwrap());
-        let run = |threads: usize, every: u64| {
+        let run = |threads: usize, way: Way| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
                 if solid {
-                    let (outcome, steps, particles, images) = hot_gas((500, 8.0, seed), axes, law, (60, every));
-                    (outcome, steps, format!("{particles:?} {images:?}"))
+                    hot_gas((500, 8.0, seed), axes, law, way)
                 } else {
-                    let axes = [axes[0], axes[1]];
-                    let (outcome, steps, particles, images) = hot_gas((3000, 60.0, seed), axes, law, (60, every));
-                    (outcome, steps, format!("{particles:?} {images:?}"))
+                    hot_gas((3000, 60.0, seed), [axes[0], axes[1]], law, way)
                 }
             })
         };
-        let one_by_one = run(1, 1);
-        let together = run(threads, 60);
-        prop_assert_eq!(&one_by_one.0, &together.0);
-        prop_assert_eq!(one_by_one.1, together.1);
+        let one_by_one = run(1, ONE_BY_ONE);
+        let together = run(threads, TOGETHER);
+        prop_assert_eq!((&one_by_one.0, one_by_one.1), (&together.0, together.1));
         prop_assert!(one_by_one.2 == together.2);
+        let in_pieces = run(threads, Way { every: 7, ..TOGETHER });
+        prop_assert!(in_pieces.2 == one_by_one.2);
     }
 }
 
 /// Grains around a few masses; some are thrown out of all that there was, unless others come from farther away.
-fn dust(seed: u64, masses: usize, softening: f64, integrator: Integrator) -> TimeDriven<3> {
+fn dust(seed: u64, masses: usize) -> Particles<3> {
     let mut random = Random::new(seed, 0);
     let mut bodies = Particles::new();
     for i in 0..400 {
@@ -233,9 +265,10 @@ fn dust(seed: u64, masses: usize, softening: f64, integrator: Integrator) -> Tim
         let speed = if i % 41 == 7 { 1e9 } else { 0.5 };
         bodies.push(Vector::from_fn(|_| size * random.normal()), Vector::from_fn(|_| speed * random.normal()), mass, 0.0, 0);
     }
-    let space = Boundary::new([-5.0; 3], [5.0; 3], Axis::Open);
-    TimeDriven::new(space, bodies, vec![Box::new(Gravity::new(1.0, softening))], integrator).unwrap()
+    bodies
 }
+
+const SPACE: [[f64; 3]; 2] = [[-5.0; 3], [5.0; 3]];
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
@@ -250,21 +283,45 @@ proptest! {
         threads in 1..4usize,
         dt in prop::sample::select(vec![1e-3, 0.1]),
     ) {
-        let run = |threads: usize, every: u64| {
+        let run = |threads: usize, way: Way| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
-                let softening = if softened { 0.3 } else { 0.0 };
-                let mut engine = dust(seed, masses, softening, Integrator::from_name(integrator, dt).unwrap());
-                let mut outcome = Ok(());
-                while outcome.is_ok() && engine.steps() < 150 {
-                    outcome = engine.advance((engine.steps() + every) as f64 * dt, &mut ());
-                }
-                (outcome, engine.steps(), engine.snapshot())
+                let gravity = Gravity::new(1.0, if softened { 0.3 } else { 0.0 });
+                let space = Boundary::new(SPACE[0], SPACE[1], Axis::Open);
+                go(space, dust(seed, masses), Box::new(gravity), Integrator::from_name(integrator, dt).unwrap(), way)
             })
         };
-        let one_by_one = run(1, 1);
-        let together = run(threads, 150);
-        prop_assert_eq!(&one_by_one.0, &together.0);
-        prop_assert!(one_by_one == together);
+        let one_by_one = run(1, Way { steps: 150, ..ONE_BY_ONE });
+        let together = run(threads, Way { steps: 150, every: 150, ..TOGETHER });
+        prop_assert_eq!((&one_by_one.0, one_by_one.1), (&together.0, together.1));
+        prop_assert!(one_by_one.2 == together.2);
+        let in_pieces = run(threads, Way { steps: 150, every: 7, ..TOGETHER });
+        prop_assert!(in_pieces.2 == one_by_one.2);
+    }
+}
+
+/// Somebody meets a star in one place, in the middle of steps that are taken together: a grain, or another star. Gravity is so weak
+/// that until then all fly straight, a whole number a step.
+#[test]
+fn a_meeting_among_grains_is_named_with_its_step() {
+    for mass in [0.0, 1.0] {
+        let mut bodies = Particles::<3>::new();
+        bodies.push(Vector::ZERO, Vector::ZERO, 1.0, 0.0, 0);
+        bodies.push(Vector([-47.0, 0.0, 0.0]), Vector([2.0, 0.0, 0.0]), mass, 0.0, 0);
+        for i in 0..200 {
+            bodies.push(Vector([f64::from(i), 300.0, 0.0]), Vector([0.0, 0.0, 1.0]), 0.0, 0.0, 0);
+        }
+        let run = |way| {
+            let space = Boundary::new(SPACE[0], SPACE[1], Axis::Open);
+            let verlet = Integrator::VelocityVerlet { dt: 0.5 };
+            go(space, bodies.clone(), Box::new(Gravity::new(1e-200, 0.0)), verlet, Way { steps: 100, ..way })
+        };
+        let (outcome, steps, numbers) = run(Way { every: 100, ..TOGETHER });
+        let failure = outcome.unwrap_err();
+        assert!(failure.particle.is_some_and(|particle| particle < 2) && failure.cause.contains("smaller dt"), "{failure}");
+        assert!((46..=47).contains(&steps), "{steps}");
+        let (other, others_steps, others_numbers) = run(ONE_BY_ONE);
+        assert_eq!((other.unwrap_err(), others_steps), (failure, steps));
+        assert!(others_numbers == numbers);
     }
 }

@@ -10,7 +10,7 @@ use super::scale::Scale;
 /// Grains handled by one thread at a time.
 const BLOCK: usize = 256;
 /// Pulls from which more than one thread is worth the waiting.
-const WORTH_THREADS: usize = 1 << 17;
+pub(super) const WORTH_THREADS: usize = 1 << 17;
 
 /// A mass as grains see it, in scaled lengths.
 #[derive(Clone, Copy, Debug)]

@@ -3,16 +3,13 @@
 //! A loop over `[f64; LANES]` becomes one, two or four vector instructions, as wide as the processor allows; every lane
 //! does the same operations whatever the width, so the choice made at run time shows in the time only.
 
-use crate::lanes::eight::Eight;
+use crate::lanes::eight::{Eight, rough_inverse_root};
 
 /// Number of virtual lanes.
 pub(super) const LANES: usize = 8;
 
 /// One number a lane.
 pub(super) type Lanes = [f64; LANES];
-
-/// Squares of distances below this are taken for zero: single precision holds them no more.
-const SMALLEST: f64 = f32::MIN_POSITIVE as f64;
 
 /// A first guess of `x^(-1/2)` for `x` from `2^-126` to `2^127`; infinite for smaller ones.
 ///
@@ -21,8 +18,7 @@ const SMALLEST: f64 = f32::MIN_POSITIVE as f64;
 /// guesses for a whole block and then use them.
 #[inline(always)]
 pub(super) fn guess(x: f64) -> f32 {
-    let x = if x < SMALLEST { 0.0 } else { x };
-    1.0 / (x as f32).sqrt()
+    rough_inverse_root(x)
 }
 
 /// `x^(-3/2)` from the [`guess`] `y` for the same `x`; not finite where the guess is not.
@@ -98,6 +94,31 @@ mod tests {
         println!("worst relative error {:.3} of 2^-53", worst / (0.5 * f64::EPSILON));
         assert!(worst < 4.5 * 0.5 * f64::EPSILON, "{worst:e}");
         assert!(worst > 1.5 * 0.5 * f64::EPSILON, "no rounding at all, {worst:e}: is the comparison exact?");
+    }
+
+    struct Cubes(Lanes);
+
+    impl crate::lanes::eight::InEights for Cubes {
+        type Output = Lanes;
+
+        #[inline(always)]
+        fn run<V: Eight>(self) -> Lanes {
+            let x = V::new(self.0);
+            inverse_cube_from(x, x.rough_inverse_root()).lanes()
+        }
+    }
+
+    #[test]
+    fn eight_at_once_are_the_same() {
+        let mut random = corpuscle_core::Random::new(4, 0);
+        for _ in 0..10_000 {
+            let x: Lanes = std::array::from_fn(|_| 2f64.powi(random.below(260) as i32 - 130) * (1.0 + random.uniform()));
+            for instructions in corpuscle_core::Instructions::all() {
+                let found = crate::lanes::eight::run(instructions, Cubes(x));
+                let bits = |x: f64| if x.is_nan() { 1 } else { x.to_bits() };
+                assert_eq!(found.map(bits), x.map(|x| bits(inverse_cube_of_root(x, guess(x)))), "{instructions:?} {x:?}");
+            }
+        }
     }
 
     #[test]

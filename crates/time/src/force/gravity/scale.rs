@@ -24,8 +24,8 @@ impl Scale {
         Self { length: if largest > 0.0 { power_of_two((60 - exponent).clamp(-500, 500)) } else { 1.0 } }
     }
 
-    /// For a system that is many times as large.
-    pub(super) fn coarser(self) -> Self {
+    /// That of a system a million times as large.
+    pub(super) fn with_room(self) -> Self {
         Self { length: self.length * power_of_two(-20) }
     }
 

@@ -5,7 +5,7 @@
 
 use corpuscle_core::{Axis, Boundary, Particles, Vector};
 
-use super::grains::Source;
+use super::grains::{Source, WORTH_THREADS};
 use super::lanes::inverse_cube_from;
 use super::scale::Scale;
 use super::{FEW, Gravity};
@@ -24,10 +24,8 @@ const FEWEST: usize = 3;
 const GRAINS_TO_A_MASS: usize = 16;
 /// The most masses: what is known of each from each grain has to stay in a cache.
 const MOST_MASSES: usize = 16;
-/// Scaled coordinates and distances from the first mass beyond this may have squares too large for single precision.
+/// Beyond these scaled coordinates of masses, or distances from the first of them, squares may be too large for single precision.
 const FAR: f64 = (1u64 << 60) as f64;
-/// Pulls from which more than one thread is worth waking.
-const WORTH_THREADS: usize = 1 << 17;
 
 impl<const D: usize> Strider<D> for Gravity<D> {
     fn strides_at_once(&self, boundary: &Boundary<D>, particles: &Particles<D>, held: usize) -> usize {
@@ -48,16 +46,12 @@ impl<const D: usize> Strider<D> for Gravity<D> {
         }
         let (tracks, finite) = self.lead(&mut masses, strides);
 
-        let scale = Scale::new(self.softening, position, self.instructions).coarser();
+        let scale = Scale::new(self.softening, position, self.instructions).with_room();
         let sources = self.sources(&tracks, scale);
         let follow = |((position, velocity), mass): ((&mut [Vector<D>], &mut [Vector<D>]), &[f64])| {
             let mut grains = Grains { position, velocity, mass };
-            let (mut scale, mut outcome) = (scale, self.follow(&mut grains, &sources, strides, scale));
-            while outcome == Outcome::TooFar {
-                scale = scale.coarser();
-                outcome = self.follow(&mut grains, &self.sources(&tracks, scale), strides, scale);
-            }
-            outcome
+            let outcome = self.follow(&mut grains, &sources, strides, scale, FAR);
+            if outcome == Outcome::TooFar { self.follow_one_by_one(&mut grains, &tracks, strides) } else { outcome }
         };
         let shared = sources.len() * position.len() >= WORTH_THREADS && rayon::current_num_threads() > 1;
         let blocks = position.chunks_mut(BLOCK).zip(velocity.chunks_mut(BLOCK)).zip(mass.chunks(BLOCK));
@@ -87,9 +81,20 @@ impl<const D: usize> Gravity<D> {
         tracks.iter().map(|&(position, mass)| Source::new(self.constant, scale, position, mass)).collect()
     }
 
-    fn follow(&self, grains: &mut Grains<'_, D>, sources: &[Source<D>], strides: &[Stride], scale: Scale) -> Outcome {
+    /// Takes strides with grains; with none of them if any goes as far as `far`.
+    fn follow(&self, grains: &mut Grains<'_, D>, sources: &[Source<D>], strides: &[Stride], scale: Scale, far: f64) -> Outcome {
         let (length, softening_squared) = (scale.length, self.softening_squared(scale));
-        eight::run(self.instructions, Follow { grains, sources, strides, length, softening_squared })
+        eight::run(self.instructions, Follow { grains, sources, strides, length, softening_squared, far })
+    }
+
+    /// The same, whatever the distance, with a scale for each stride.
+    fn follow_one_by_one(&self, grains: &mut Grains<'_, D>, tracks: &[(Vector<D>, f64)], strides: &[Stride]) -> Outcome {
+        let one = |(stride, tracks): (&Stride, &[(Vector<D>, f64)])| {
+            let places: Vec<_> = tracks.iter().map(|track| track.0).chain(grains.position.iter().copied()).collect();
+            let scale = Scale::new(self.softening, &places, self.instructions);
+            self.follow(grains, &self.sources(tracks, scale), std::slice::from_ref(stride), scale, f64::INFINITY)
+        };
+        strides.iter().zip(tracks.chunks_exact(tracks.len() / strides.len())).map(one).fold(Outcome::Finite, Outcome::and)
     }
 }
 
@@ -125,6 +130,8 @@ struct Follow<'a, 'b, const D: usize> {
     strides: &'a [Stride],
     length: f64,
     softening_squared: f64,
+    /// Scaled coordinates, and distances from the first mass, that are too large.
+    far: f64,
 }
 
 /// The square of the distance from a mass, and a guess of its inverse root: made for all grains of a block before they are used, as
@@ -216,10 +223,10 @@ impl<const D: usize> InEights for Follow<'_, '_, D> {
         // A mass among the grains has met itself.
         let grains = || (0..count).filter(|&i| mass[i] == 0.0);
         let place = |i: usize| Vector::<D>::from_fn(|k| places[i / LANES][k][i % LANES]);
-        let is_near = |i: usize| far[i / LANES][i % LANES] < FAR * FAR || !place(i).is_finite();
+        let is_near = |i: usize| far[i / LANES][i % LANES] < self.far * self.far;
         let mut coordinates = self.sources.iter().flat_map(|source| source.position.0);
-        if coordinates.any(|x| FAR < x.abs() && x.is_finite()) || !grains().all(is_near) {
-            return Outcome::TooFar;
+        if self.far.is_finite() && !(coordinates.all(|x| x.abs() < self.far) && grains().all(is_near)) {
+            return Outcome::TooFar; // or nowhere: taken one by one, they tell
         }
         let mut outcome = Outcome::Finite;
         for i in grains() {

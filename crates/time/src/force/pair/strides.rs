@@ -55,10 +55,13 @@ impl<P: PairPotential, const D: usize> Strider<D> for PairForce<P, D> {
         if strides.len() >= FEWEST {
             let State { boundary, particles, images, .. } = state;
             let mut order = std::mem::take(&mut self.order);
+            self.neighbours.awake = true;
             self.neighbours.update(boundary, &particles.position);
-            let shared = self.neighbours.are_shared();
+            let shared = self.neighbours.is_shared();
             let mut all = || self.take_strides(&mut order, boundary, particles, images, strides);
+            // Whoever comes from outside enters the pool once, and not for each share.
             taken = if shared { rayon::scope(|_| all()) } else { all() };
+            self.neighbours.awake = false;
             self.order = order;
         }
         Progress { taken, finite: [true; 2] }
@@ -80,7 +83,7 @@ impl<P: PairPotential, const D: usize> PairForce<P, D> {
             self.neighbours.blocks.load_species(&particles.species);
             self.put_in_order(order, particles);
             let ahead = &strides[taken..];
-            let shared = self.neighbours.are_shared();
+            let shared = self.neighbours.is_shared();
             let mut while_it_holds = || {
                 if let [potential] = table[..] {
                     self.while_it_holds(Uniform(potential), order, boundary, images, ahead)
@@ -132,7 +135,7 @@ impl<P: PairPotential, const D: usize> PairForce<P, D> {
         let cutoff = largest(&self.table, P::cutoff);
         let finest = finest(&self.table, |potential| potential.depth() / potential.length());
         let (blocks, shares, pruned_at) = (&self.neighbours.blocks, &self.neighbours.shares, &self.neighbours.pruned_at);
-        let (places, instructions) = (self.neighbours.places_a_share(), self.instructions);
+        let (places, shared, instructions) = (self.neighbours.places_a_share(), self.neighbours.is_shared(), self.instructions);
         let InOrder { parts, next } = order;
         loop {
             let quantum = self.quantum;
@@ -142,7 +145,7 @@ impl<P: PairPotential, const D: usize> PairForce<P, D> {
                 lanes::run(instructions, Foresee { pairs, quantum, boundary, stride, pruned_at, share, next })
             };
             let parts = parts.iter_mut().zip(next.chunks_mut(places)).enumerate();
-            let seen = threads::sum(shares.len() > 1, parts, one, Seen::and);
+            let seen = threads::sum(shared, parts, one, Seen::and);
             let bound = seen.scale * cutoff;
             if !(bound + seen.doubt).is_finite() {
                 return None;
@@ -170,7 +173,7 @@ impl<P: PairPotential, const D: usize> PairForce<P, D> {
         let velocity = |i: u32, k: usize| particles.velocity.get(i as usize).map_or(0.0, |v| v[k]);
         let inverse_mass = |i: u32| particles.mass.get(i as usize).map_or(0.0, |mass| 1.0 / mass);
         let parts = order.parts.iter_mut().zip(blocks.particle.chunks(places));
-        threads::for_each(count > 1, parts, |(share, members)| {
+        threads::for_each(self.neighbours.is_shared(), parts, |(share, members)| {
             let (quads, _) = members.as_chunks::<LANES>();
             share.velocity.clear();
             share.velocity.extend(quads.iter().map(|quad| std::array::from_fn(|k| quad.map(|i| velocity(i, k)))));
@@ -185,7 +188,7 @@ impl<P: PairPotential, const D: usize> PairForce<P, D> {
         let blocks = &self.neighbours.blocks;
         let quads = self.neighbours.places_a_share() / LANES;
         let chunks = particles.position.chunks_mut(CHUNK).zip(particles.velocity.chunks_mut(CHUNK)).zip(blocks.place.chunks(CHUNK));
-        threads::for_each(self.neighbours.are_shared(), chunks, |((position, velocity), place)| {
+        threads::for_each(self.neighbours.is_shared(), chunks, |((position, velocity), place)| {
             for ((position, velocity), &place) in position.iter_mut().zip(velocity).zip(place) {
                 let place = place as usize;
                 let (quad, lane) = (place / LANES, place % LANES);
