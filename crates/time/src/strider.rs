@@ -27,8 +27,8 @@ pub struct Progress {
 /// A force that takes strides, each by the accelerations at the positions before it. Bits are those of accelerations, kicks and drifts
 /// one after the other.
 pub trait Strider<const D: usize> {
-    /// How many strides should be asked for at once, where nobody looks at the particles in between; 0 where none can be taken. Neither
-    /// positions nor velocities matter.
+    /// How many strides should be asked for at once, where nobody looks at the particles in between; 0 where none can be taken. The
+    /// engine keeps a state every so often, and asks for no more than lead to the next. Neither positions nor velocities matter.
     fn strides_at_once(&self, boundary: &Boundary<D>, particles: &Particles<D>, held: usize) -> usize;
 
     /// Takes these strides, or only the first of them.

@@ -325,3 +325,26 @@ fn a_meeting_among_grains_is_named_with_its_step() {
         assert!(others_numbers == numbers);
     }
 }
+
+/// Of a long string several steps are taken together. With symplectic Euler, which owes nothing at a stop, the last of them used to be
+/// forgotten.
+#[test]
+fn a_long_string_arrives_whatever_the_integrator() {
+    let count = 40_000;
+    let mut random = Random::new(8, 0);
+    let mut beads = Particles::<2>::new();
+    for i in 0..count {
+        beads.push(Vector([i as f64, random.normal()]), Vector([0.0, random.normal()]), 1.0, 0.0, 0);
+    }
+    for name in ["velocity-verlet", "symplectic-euler", "yoshida-4"] {
+        let run = |way| {
+            let springs = Springs::new((1..count).map(|i| Spring::new(i - 1, i, 1.0, 0.0)).collect());
+            let space = Boundary::new([-1.0; 2], [1.0; 2], Axis::Open);
+            go(space, beads.clone(), Box::new(springs), Integrator::from_name(name, 0.05).unwrap(), way)
+        };
+        let one_by_one = run(Way { steps: 13, ..ONE_BY_ONE });
+        for every in [13, 5] {
+            assert!(run(Way { steps: 13, every, ..TOGETHER }) == one_by_one, "{name}, {every}");
+        }
+    }
+}
