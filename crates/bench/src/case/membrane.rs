@@ -34,6 +34,8 @@ const STEP: f64 = 0.1;
 const BYTES: f64 = 104.0;
 /// Masses times steps between two looks at the clock. Where an engine stops, it finds all accelerations once more.
 const WORK_OF_GROUP: usize = 128_000_000;
+/// The most steps, so that few masses do not take longer than asked for.
+const MOST_OF_GROUP: usize = 2000;
 
 /// A mode of a square membrane whose rim is held: `sin(p pi x / L) sin(p pi y / L)`.
 struct Mode {
@@ -95,7 +97,8 @@ fn run(settings: &Settings) -> Result<Vec<Figure>, Trouble> {
     let clock = CASE.clock(settings);
     let mut drift = Drift::<1>::new();
     drift.see_energy(engine.energy());
-    let taken = steps::take(&mut engine, clock, settings.real("seconds"), WORK_OF_GROUP.div_ceil(count) as u64, |_| {})?;
+    let group = WORK_OF_GROUP.div_ceil(count).min(MOST_OF_GROUP) as u64;
+    let taken = steps::take(&mut engine, clock, settings.real("seconds"), group, |_| {})?;
     drift.see_energy(engine.energy());
     let bandwidth = bandwidth(3 * count, clock, 0.2 * settings.real("seconds"));
     let milliseconds = 1e3 / taken.per_second();
