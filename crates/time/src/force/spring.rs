@@ -4,7 +4,6 @@ use corpuscle_core::{Axis, Boundary, Instructions, Invalid, Particles, Vector};
 
 mod gather;
 mod lattice;
-mod ring;
 mod run;
 mod scatter;
 mod strides;

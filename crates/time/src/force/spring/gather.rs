@@ -4,17 +4,54 @@ use corpuscle_core::Vector;
 use corpuscle_core::instructions::prefetch;
 
 use crate::lanes::eight::{Eight, InEights, LANES};
-use crate::motion::Moves;
 
 /// `a = (sum_n k_n (r_n - r)) / m`, number by number: whatever the dimension, neighbours are as far apart. The sum begins with the
 /// first neighbour.
-pub(super) struct Gather<'a, S, const N: usize> {
+pub(super) struct Gather<'a, M, S, const N: usize> {
     pub(super) stiffness: [f64; N],
     pub(super) near: [&'a [f64]; N],
     pub(super) own: &'a [f64],
-    pub(super) inverse_mass: &'a [f64],
+    pub(super) inverse_mass: M,
     /// Where accelerations go.
     pub(super) sink: S,
+}
+
+/// What every sum is multiplied by.
+pub(super) trait Factor {
+    /// Group `g` of them.
+    fn group<V: Eight>(&self, g: usize) -> V;
+    /// One of them, by its number.
+    fn one(&self, n: usize) -> f64;
+}
+
+/// The same for all.
+pub(super) struct Alike(pub(super) f64);
+
+impl Factor for Alike {
+    #[inline(always)]
+    fn group<V: Eight>(&self, _: usize) -> V {
+        V::splat(self.0)
+    }
+
+    #[inline(always)]
+    fn one(&self, _: usize) -> f64 {
+        self.0
+    }
+}
+
+/// One for each number.
+pub(super) struct Each<'a>(pub(super) &'a [f64]);
+
+impl Factor for Each<'_> {
+    #[inline(always)]
+    fn group<V: Eight>(&self, g: usize) -> V {
+        V::new(*self.0[g..].first_chunk().unwrap())
+    }
+
+    #[inline(always)]
+    fn one(&self, n: usize) -> f64 {
+        self.0[n]
+    }
 }
 
 /// What takes accelerations.
@@ -24,44 +61,46 @@ pub(super) trait Sink {
 
     /// How many it takes.
     fn len(&self) -> usize;
-    /// Group `g` of them, and where the particles are; `doubts` are zero at first.
-    fn take<V: Eight>(&mut self, g: usize, r: V, a: V, doubts: &mut [V; 2]);
+    fn head(&self) -> usize;
+    /// Group `g` of them; `doubt` is zero at first.
+    fn take<V: Eight>(&mut self, g: usize, a: V, doubt: &mut V);
     /// One of those after the groups, by its number.
-    fn take_one(&mut self, n: usize, r: f64, a: f64);
+    fn take_one(&mut self, n: usize, a: f64);
     /// After the last.
-    fn finish(self, doubts: [[f64; LANES]; 2]) -> Self::Output;
+    fn finish(self, doubt: [f64; LANES]) -> Self::Output;
 }
 
-impl<S: Sink, const N: usize> InEights for Gather<'_, S, N> {
+impl<M: Factor, S: Sink, const N: usize> InEights for Gather<'_, M, S, N> {
     type Output = S::Output;
 
     #[inline(always)]
     fn run<V: Eight>(self) -> S::Output {
         let Self { stiffness, near, own, inverse_mass, mut sink } = self;
-        let groups = own.len() / LANES;
+        let head = sink.head();
         let (mut stiff, mut eights) = ([V::splat(0.0); N], [&[][..]; N]);
+        let groups = (own.len() - head) / LANES;
         for n in 0..N {
-            (stiff[n], eights[n]) = (V::splat(stiffness[n]), &near[n].as_chunks::<LANES>().0[..groups]);
+            (stiff[n], eights[n]) = (V::splat(stiffness[n]), &near[n][head..].as_chunks::<LANES>().0[..groups]);
         }
-        let (own_eights, inverse_masses) = (&own.as_chunks::<LANES>().0[..groups], &inverse_mass.as_chunks::<LANES>().0[..groups]);
-        let mut doubts = [V::splat(0.0); 2];
+        let own_eights = &own[head..].as_chunks::<LANES>().0[..groups];
+        let mut doubt = V::splat(0.0);
+        for last in (0..head).chain(head + groups * LANES..own.len()) {
+            let mut a = 0.0;
+            for n in 0..N {
+                let pull = stiffness[n] * (near[n][last] - own[last]);
+                a = if n == 0 { pull } else { a + pull };
+            }
+            sink.take_one(last, a * inverse_mass.one(last));
+        }
         for g in 0..groups {
             let (r, mut a) = (V::new(own_eights[g]), V::splat(0.0));
             for n in 0..N {
                 let pull = stiff[n].mul(V::new(eights[n][g]).sub(r));
                 a = if n == 0 { pull } else { a.add(pull) };
             }
-            sink.take(g, r, a.mul(V::new(inverse_masses[g])), &mut doubts);
+            sink.take(head + g * LANES, a.mul(inverse_mass.group(head + g * LANES)), &mut doubt);
         }
-        for last in groups * LANES..own.len() {
-            let mut a = 0.0;
-            for n in 0..N {
-                let pull = stiffness[n] * (near[n][last] - own[last]);
-                a = if n == 0 { pull } else { a + pull };
-            }
-            sink.take_one(last, own[last], a * inverse_mass[last]);
-        }
-        sink.finish(doubts.map(V::lanes))
+        sink.finish(doubt.lanes())
     }
 }
 
@@ -74,85 +113,118 @@ impl Sink for Add<'_> {
     fn len(&self) -> usize {
         self.0.len()
     }
+    #[inline(always)]
+    fn head(&self) -> usize {
+        self.0.as_ptr().align_offset(64).min(self.0.len())
+    }
 
     #[inline(always)]
-    fn take<V: Eight>(&mut self, g: usize, _: V, a: V, _: &mut [V; 2]) {
-        let sum = &mut self.0.as_chunks_mut::<LANES>().0[g];
+    fn take<V: Eight>(&mut self, g: usize, a: V, _: &mut V) {
+        let sum = &mut *self.0[g..].first_chunk_mut().unwrap();
         *sum = V::new(*sum).add(a).lanes();
     }
 
     #[inline(always)]
-    fn take_one(&mut self, n: usize, _: f64, a: f64) {
+    fn take_one(&mut self, n: usize, a: f64) {
         self.0[n] += a;
     }
 
-    fn finish(self, _: [[f64; LANES]; 2]) {}
+    fn finish(self, _: [f64; LANES]) {}
 }
 
-/// Kicks and drifts, as [`Moves::apply`], and asks for what will soon be needed.
-pub(super) struct Move<'a, const OWED: bool> {
-    /// Where positions go.
-    position: &'a mut [f64],
+/// `v += a first`, then `v += a second` if there are two kicks; asks for what will soon be needed.
+pub(super) struct Kick<'a, const TWO: bool> {
     velocity: &'a mut [f64],
+    first: f64,
+    second: f64,
     soon: [&'a [f64]; 2],
-    owed: f64,
-    kick: f64,
-    drift: f64,
-    /// Sums of velocities and of positions: finite only if all of them are. Those of groups are kept in registers.
-    doubts: [f64; 2],
+    /// Sum of velocities: finite only if all of them are. That of groups is kept in registers.
+    doubt: f64,
 }
 
-impl<'a, const OWED: bool> Move<'a, OWED> {
-    pub(super) fn new<const D: usize>(
-        position: &'a mut [Vector<D>],
-        velocity: &'a mut [Vector<D>],
-        soon: [&'a [Vector<D>]; 2],
-        moves: Moves,
-    ) -> Self {
-        let Moves { owed, kick, drift } = moves;
-        let (position, velocity) = (Vector::components_mut(position), Vector::components_mut(velocity));
-        Self { position, velocity, soon: soon.map(Vector::components), owed: owed.unwrap_or(0.0), kick, drift, doubts: [0.0; 2] }
+impl<'a> Kick<'a, false> {
+    pub(super) fn once<const D: usize>(velocity: &'a mut [Vector<D>], kick: f64, soon: [&'a [Vector<D>]; 2]) -> Self {
+        Self { velocity: Vector::components_mut(velocity), first: kick, second: 0.0, soon: soon.map(Vector::components), doubt: 0.0 }
+    }
+
+    pub(super) fn and(self, second: f64) -> Kick<'a, true> {
+        let Self { velocity, first, soon, doubt, .. } = self;
+        Kick { velocity, first, second, soon, doubt }
     }
 }
 
-impl<const OWED: bool> Sink for Move<'_, OWED> {
-    /// Whether every velocity was finite before the kick that was not owed, and whether every position is.
-    type Output = [bool; 2];
+impl<const TWO: bool> Sink for Kick<'_, TWO> {
+    /// Whether every velocity is finite after the first kick.
+    type Output = bool;
 
     fn len(&self) -> usize {
-        self.position.len()
+        self.velocity.len()
+    }
+    #[inline(always)]
+    fn head(&self) -> usize {
+        self.velocity.as_ptr().align_offset(64).min(self.velocity.len())
     }
 
     #[inline(always)]
-    fn take<V: Eight>(&mut self, g: usize, r: V, a: V, doubts: &mut [V; 2]) {
-        prefetch(self.soon[0], LANES * g);
-        prefetch(self.soon[1], LANES * g);
-        let velocity = &mut self.velocity.as_chunks_mut::<LANES>().0[g];
-        let mut v = V::new(*velocity);
-        if OWED {
-            v = v.add(a.mul(V::splat(self.owed)));
-            doubts[0] = doubts[0].add(v);
+    fn take<V: Eight>(&mut self, g: usize, a: V, doubt: &mut V) {
+        prefetch(self.soon[0], g);
+        prefetch(self.soon[1], g);
+        let velocity = &mut *self.velocity[g..].first_chunk_mut::<LANES>().unwrap();
+        let mut v = V::new(*velocity).add(a.mul(V::splat(self.first)));
+        *doubt = doubt.add(v);
+        if TWO {
+            v = v.add(a.mul(V::splat(self.second)));
         }
-        v = v.add(a.mul(V::splat(self.kick)));
-        let r = r.add(v.mul(V::splat(self.drift)));
-        doubts[1] = doubts[1].add(r);
         *velocity = v.lanes();
-        self.position.as_chunks_mut::<LANES>().0[g] = r.lanes();
     }
 
     #[inline(always)]
-    fn take_one(&mut self, n: usize, r: f64, a: f64) {
+    fn take_one(&mut self, n: usize, a: f64) {
         let v = &mut self.velocity[n];
-        if OWED {
-            *v += a * self.owed;
-            self.doubts[0] += *v;
+        *v += a * self.first;
+        self.doubt += *v;
+        if TWO {
+            *v += a * self.second;
         }
-        *v += a * self.kick;
-        self.position[n] = r + *v * self.drift;
-        self.doubts[1] += self.position[n];
     }
 
-    fn finish(self, doubts: [[f64; LANES]; 2]) -> [bool; 2] {
-        [0, 1].map(|when| (doubts[when].iter().sum::<f64>() + self.doubts[when]).is_finite())
+    fn finish(self, doubt: [f64; LANES]) -> bool {
+        (doubt.iter().sum::<f64>() + self.doubt).is_finite()
+    }
+}
+
+/// `r += v drift`, number by number. Tells whether every `r` is finite.
+pub(super) struct Drift<'a> {
+    pub(super) position: &'a mut [f64],
+    pub(super) velocity: &'a [f64],
+    pub(super) drift: f64,
+}
+
+impl InEights for Drift<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<V: Eight>(self) -> bool {
+        let Self { position, velocity, drift } = self;
+        let mut doubt = 0.0;
+        let head = position.as_ptr().align_offset(64).min(position.len());
+        let ((head, position), (head_v, velocity)) = (position.split_at_mut(head), velocity.split_at(head));
+        for (r, v) in head.iter_mut().zip(head_v) {
+            *r += v * drift;
+            doubt += *r;
+        }
+        let (positions, last_positions) = position.as_chunks_mut::<LANES>();
+        let (velocities, last_velocities) = velocity.as_chunks::<LANES>();
+        let (by, mut doubts) = (V::splat(drift), V::splat(0.0));
+        for (position, velocity) in positions.iter_mut().zip(velocities) {
+            let r = V::new(*position).add(V::new(*velocity).mul(by));
+            doubts = doubts.add(r);
+            *position = r.lanes();
+        }
+        for (r, v) in last_positions.iter_mut().zip(last_velocities) {
+            *r += v * drift;
+            doubt += *r;
+        }
+        (doubts.lanes().iter().sum::<f64>() + doubt).is_finite()
     }
 }

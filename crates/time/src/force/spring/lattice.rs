@@ -9,12 +9,13 @@ use corpuscle_core::{Instructions, Particles, Vector};
 use rayon::prelude::*;
 
 use super::Spring;
-use super::gather::{Add, Gather, Sink};
+use super::gather::{Add, Alike, Each, Gather, Kick, Sink};
+use crate::constraint::Held;
 use crate::lanes::eight;
 use crate::threads::{self, CHUNK};
 
 /// Particles handled together.
-pub(super) const BLOCK: usize = 256;
+const BLOCK: usize = 256;
 /// Particles that must have the same neighbours, one after the other, in the mean.
 const REGULAR: usize = 16;
 /// The most springs at a particle: kernels are compiled for each number of them.
@@ -79,26 +80,52 @@ impl Lattice {
     /// Adds the accelerations.
     pub(super) fn accelerate<const D: usize>(&self, particles: &Particles<D>, acceleration: &mut [Vector<D>]) {
         let Particles { position, mass, .. } = particles;
-        let one = |(number, acceleration): (usize, &mut [Vector<D>])| {
+        self.everywhere(position, mass, acceleration, |neighbours, place, acceleration| {
+            self.gather(neighbours, place, Add(Vector::components_mut(acceleration)));
+            true
+        });
+    }
+
+    /// `v += a dt` but for held coordinates; tells whether every `v` is finite.
+    pub(super) fn kick<const D: usize>(&self, particles: &mut Particles<D>, held: &[Held], dt: f64) -> bool {
+        let Particles { position, velocity, mass, .. } = particles;
+        let before: Vec<f64> = held.iter().map(|held| velocity[held.particle][held.axis]).collect();
+        let finite = self.everywhere(position, mass, velocity, |neighbours, place, velocity| {
+            self.gather(neighbours, place, Kick::once(velocity, dt, [&[]; 2]))
+        });
+        for (held, before) in held.iter().zip(before) {
+            velocity[held.particle][held.axis] = before;
+        }
+        finite
+    }
+
+    /// Does something for all particles, whose share of `target` it is given; tells whether it gave true for all.
+    fn everywhere<const D: usize>(
+        &self,
+        position: &[Vector<D>],
+        mass: &[f64],
+        target: &mut [Vector<D>],
+        act: impl Fn(&[Neighbour], Place<'_, D>, &mut [Vector<D>]) -> bool + Sync,
+    ) -> bool {
+        let one = |(number, target): (usize, &mut [Vector<D>])| {
             let from = number * CHUNK;
-            let mut inverse_mass = InverseMass::<D>::new(&mass[from..from + acceleration.len()], BLOCK);
-            let mut first = self.first_stretch(from);
-            for (block, acceleration) in acceleration.chunks_mut(BLOCK).enumerate() {
+            let mut inverse_mass = InverseMass::<D>::new(&mass[from..from + target.len()]);
+            let (mut first, mut all) = (self.first_stretch(from), true);
+            for (block, target) in target.chunks_mut(BLOCK).enumerate() {
                 let start = from + block * BLOCK;
-                let end = start + acceleration.len();
+                let end = start + target.len();
                 inverse_mass.see(start - from..end - from);
                 for (piece, neighbours) in self.pieces(start..end, &mut first) {
-                    let of_piece = Vector::components_mut(&mut acceleration[piece.start - start..piece.end - start]);
-                    let inverse_mass = inverse_mass.from(piece.start - start);
-                    let place = Place { around: Around { position, own: piece.start }, inverse_mass };
-                    self.gather(neighbours, place, Add(of_piece));
+                    let place = Place { position, own: piece.start, inverse_mass: inverse_mass.from(piece.start - start) };
+                    all &= act(neighbours, place, &mut target[piece.start - start..piece.end - start]);
                 }
             }
+            all
         };
-        if threads::are_worth_it(acceleration.len()) {
-            acceleration.par_chunks_mut(CHUNK).enumerate().for_each(one);
+        if threads::are_worth_it(target.len()) {
+            target.par_chunks_mut(CHUNK).enumerate().map(one).reduce(|| true, |one, other| one && other)
         } else {
-            acceleration.chunks_mut(CHUNK).enumerate().for_each(one);
+            target.chunks_mut(CHUNK).enumerate().map(one).fold(true, |one, other| one && other)
         }
     }
 
@@ -152,113 +179,71 @@ impl Lattice {
         place: Place<'_, D>,
         sink: S,
     ) -> S::Output {
-        let Place { around, inverse_mass } = place;
-        let components = |first: usize| &Vector::components(&around.position[first..])[..sink.len()];
-        let near = neighbours.map(|neighbour| components(around.at(neighbour.offset)));
-        let stiffness = neighbours.map(|neighbour| neighbour.stiffness);
-        let inverse_mass = &inverse_mass[..sink.len()];
-        eight::run(self.instructions, Gather { stiffness, near, own: components(around.own), inverse_mass, sink })
+        let Place { position, own, inverse_mass } = place;
+        let components = |first: usize| &Vector::components(&position[first..])[..sink.len()];
+        let near = neighbours.map(|neighbour| components(own.strict_add_signed(neighbour.offset)));
+        let (stiffness, own) = (neighbours.map(|neighbour| neighbour.stiffness), components(own));
+        match inverse_mass {
+            Inverse::Alike(one) => eight::run(self.instructions, Gather { stiffness, near, own, inverse_mass: Alike(one), sink }),
+            Inverse::Each(all) => {
+                let inverse_mass = Each(&all[..sink.len()]);
+                eight::run(self.instructions, Gather { stiffness, near, own, inverse_mass, sink })
+            }
+        }
     }
 }
 
 /// The particles of a piece.
 #[derive(Clone, Copy)]
 pub(super) struct Place<'a, const D: usize> {
-    pub(super) around: Around<'a, D>,
-    /// For each component.
-    pub(super) inverse_mass: &'a [f64],
-}
-
-/// Where particles that follow one another are, and their neighbours.
-#[derive(Clone, Copy)]
-pub(super) struct Around<'a, const D: usize> {
-    /// After the last they follow from the first on again.
+    /// Theirs, and those of all that pulls at them.
     pub(super) position: &'a [Vector<D>],
-    /// Which of these positions is that of the first particle.
+    /// Which of these is that of the first.
     pub(super) own: usize,
+    pub(super) inverse_mass: Inverse<'a>,
 }
 
-impl<const D: usize> Around<'_, D> {
-    /// Without the first few, which are in one piece.
-    pub(super) fn from(self, first: usize) -> Self {
-        Self { own: self.own + first, ..self }
-    }
-
-    /// Of `most` particles, so many have their neighbours, none farther than `reach`, in one piece.
-    pub(super) fn straight(self, neighbours: &[Neighbour], reach: usize, most: usize) -> usize {
-        let count = self.position.len();
-        if self.own >= reach && self.own + most + reach <= count {
-            return most;
-        }
-        neighbours.iter().map(|neighbour| count - self.at(neighbour.offset)).fold(most.min(count - self.own), usize::min)
-    }
-
-    /// Where the position is that is so much farther on in memory.
-    #[inline]
-    fn at(self, offset: isize) -> usize {
-        let (at, room) = (self.own as isize + offset, self.position.len() as isize);
-        (at + if at < 0 {
-            room
-        } else if at < room {
-            0
-        } else {
-            -room
-        }) as usize
-    }
+/// `1/m`; 0 without mass, which nothing pulls at.
+#[derive(Clone, Copy)]
+pub(super) enum Inverse<'a> {
+    Alike(f64),
+    /// For each component of the particles.
+    Each(&'a [f64]),
 }
 
-/// `1/m` for each component of the particles of a block; 0 without mass, which nothing pulls at.
+/// [`Inverse`] masses of the particles of a block.
 pub(super) struct InverseMass<'a, const D: usize> {
     mass: &'a [f64],
-    components: Vec<[f64; D]>,
-    /// The mass they are all of, if they are.
+    /// That of all particles, if they are alike: most chains and membranes are of equal masses.
     alike: Option<f64>,
-    /// Whether that is the mass of all particles. Most chains and membranes are of equal masses: nothing is to be done then.
-    all: bool,
+    /// For each component of the particles of the block.
+    components: Vec<[f64; D]>,
 }
 
 impl<'a, const D: usize> InverseMass<'a, D> {
-    /// For blocks of at most so many of particles of these masses.
-    pub(super) fn new(mass: &'a [f64], block: usize) -> Self {
-        let mut seen = Self { mass, components: vec![], alike: None, all: false };
-        if let Some(alike) = alike(mass) {
-            seen.take_in(&mass[..block.min(mass.len())], Some(alike));
-            seen.all = true;
-        }
-        seen
+    /// Of particles of these masses.
+    pub(super) fn new(mass: &'a [f64]) -> Self {
+        let alike = mass.first().filter(|first| {
+            let differences = mass.iter().fold(0, |bits, mass| bits | (mass.to_bits() ^ first.to_bits()));
+            differences == 0
+        });
+        Self { mass, alike: alike.map(|&mass| inverse(mass)), components: vec![] }
     }
 
     /// Takes in the masses of a block.
     pub(super) fn see(&mut self, block: Range<usize>) {
-        if self.all {
-            return;
-        }
-        let mass = &self.mass[block];
-        let alike = alike(mass);
-        if alike.is_none() || alike != self.alike || mass.len() > self.components.len() {
-            self.take_in(mass, alike);
+        if self.alike.is_none() {
+            self.components.clear();
+            self.components.extend(self.mass[block].iter().map(|&mass| [inverse(mass); D]));
         }
     }
 
-    fn take_in(&mut self, mass: &[f64], alike: Option<f64>) {
-        self.alike = alike;
-        let inverse = |mass: f64| if mass == 0.0 { 0.0 } else { 1.0 / mass };
-        self.components.clear();
-        if let Some(alike) = alike {
-            self.components.resize(mass.len(), [inverse(alike); D]);
-        } else {
-            self.components.extend(mass.iter().map(|&mass| [inverse(mass); D]));
-        }
-    }
-
-    pub(super) fn from(&self, particle: usize) -> &[f64] {
-        self.components[particle..].as_flattened()
+    /// Those of the particles of the block from this one on.
+    pub(super) fn from(&self, particle: usize) -> Inverse<'_> {
+        self.alike.map_or_else(|| Inverse::Each(self.components[particle..].as_flattened()), Inverse::Alike)
     }
 }
 
-/// The one mass that all of these are.
-fn alike(mass: &[f64]) -> Option<f64> {
-    let &first = mass.first()?;
-    let differences = mass.iter().fold(0, |bits, mass| bits | (mass.to_bits() ^ first.to_bits()));
-    (differences == 0).then_some(first)
+fn inverse(mass: f64) -> f64 {
+    if mass == 0.0 { 0.0 } else { 1.0 / mass }
 }

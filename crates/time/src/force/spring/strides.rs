@@ -1,206 +1,239 @@
 //! Several steps of a lattice in one sweep over the memory.
 //!
-//! As soon as a block and all that pulls at it have taken a step, the block can take the next: sweeps follow one another through the
-//! memory a few blocks apart, each through what the one before has just left in a cache (time skewing; McCalpin and Wonnacott 1999,
-//! Rutgers DCS-TR-379). Between two of them places are kept in a ring; the last puts them where they belong.
+//! Kicks read positions and write velocities, drifts read velocities and write positions: both are done in place. As soon as all
+//! that a particle pulls at has been kicked, it can drift, and as soon as all that pulls at it has drifted, it can be kicked again.
+//! So steps follow one another through the memory, twice as far apart as springs reach, each through what the one before has just
+//! left in a cache (time skewing; McCalpin and Wonnacott 1999, Rutgers DCS-TR-379). Threads sweep parts of the memory, each step
+//! ending farther from where parts meet than the one before, and then what is left there (split tiling; Krishnamoorthy et al. 2007,
+//! doi:10.1145/1250734.1250761): nothing is copied, nothing done twice.
+
+use std::ops::Range;
 
 use corpuscle_core::{Particles, Vector};
+use rayon::prelude::*;
 
-use super::gather::Move;
-use super::lattice::{Around, InverseMass, Lattice, Place};
-use super::ring::Ring;
-use super::sweep::{Sweep, in_parts};
+use super::gather::{Drift, Kick};
+use super::lattice::{InverseMass, Lattice, Place};
 use crate::constraint::Held;
-use crate::motion::{Stride, both};
+use crate::lanes::eight;
+use crate::motion::{Moves, Stride, both};
+use crate::threads;
 
 /// The most strides in a sweep.
 const MOST: usize = 8;
 /// Bytes that may be at work: a second cache.
 const AT_WORK: usize = 1 << 20;
-/// Particles handled together are a multiple of these.
-const BLOCK: usize = 256;
+/// Particles handled together.
+const BLOCK: usize = 1024;
+/// Parts of the memory a thread: whoever is held up leaves some to the others.
+const PARTS_A_THREAD: usize = 2;
 
 impl Lattice {
     /// How many strides of so many particles should be taken at once: as many as keep what is between the first and the last in a
     /// cache, and one where all particles are in a cache anyway.
     pub(super) fn strides_at_once<const D: usize>(&self, particles: usize) -> usize {
-        let particle = size_of::<Vector<D>>();
-        if 2 * particle * particles <= AT_WORK / 2 {
+        let particle = 2 * size_of::<Vector<D>>();
+        if particle * particles <= AT_WORK / 2 {
             return 1;
         }
-        // Three blocks are in a ring, and the velocities of one are between a stride and the next.
-        (AT_WORK / (4 * particle * self.block())).clamp(1, MOST)
-    }
-
-    /// Particles handled together: no spring reaches beyond the next block.
-    fn block(&self) -> usize {
-        self.reach.max(1).next_multiple_of(BLOCK)
+        (AT_WORK / (2 * particle * self.reach.max(BLOCK))).clamp(1, MOST)
     }
 
     /// Takes these strides, one after the other; tells what [`kick_and_drift`](crate::motion::kick_and_drift)
     /// does, of all of them together.
     pub(super) fn sweep<const D: usize>(&self, particles: &mut Particles<D>, held: &[Held], strides: &[Stride]) -> [bool; 2] {
         let Particles { position, velocity, mass, .. } = particles;
-        let sweep = Gathering { lattice: self, mass, held, strides };
-        in_parts(&sweep, position, velocity, self.block(), self.reach)
+        let parts = if threads::are_worth_it(mass.len()) { PARTS_A_THREAD * rayon::current_num_threads() } else { 1 };
+        Sweep { lattice: self, mass, held, strides }.in_parts(position, velocity, parts)
     }
 }
 
 /// Strides of all particles.
 #[derive(Clone, Copy)]
-struct Gathering<'a> {
+struct Sweep<'a> {
     lattice: &'a Lattice,
     mass: &'a [f64],
     held: &'a [Held],
     strides: &'a [Stride],
 }
 
-/// Before each stride, where the particles before and behind a place in the memory are, as far as springs reach.
-type Seam<const D: usize> = Vec<[Vec<Vector<D>>; 2]>;
+/// Particles that follow one another, and which of them are moved: from kick to drift to kick fewer where others follow that are
+/// not known, and more where those left them.
+struct Tile<'a, const D: usize> {
+    /// The first of them.
+    from: usize,
+    position: &'a mut [Vector<D>],
+    velocity: &'a mut [Vector<D>],
+    bounds: [Bound; 2],
+}
 
-impl<const D: usize> Sweep<D> for Gathering<'_> {
-    type Seam = Seam<D>;
+/// The first that is moved, or the first that no longer is.
+#[derive(Clone, Copy)]
+enum Bound {
+    Fixed(usize),
+    Rising(usize),
+    Falling(usize),
+}
 
-    /// What will be around the place before each stride depends on what is farther and farther away before the first; that takes the
-    /// strides here in a copy, and once more in its part.
-    fn seam(&self, position: &[Vector<D>], velocity: &[Vector<D>], at: usize) -> Seam<D> {
-        let (count, reach) = (position.len(), self.lattice.reach);
-        let far = self.strides.len() * reach;
-        let (from, end) = (at.saturating_sub(far), (at + far).min(count));
-        let (mut position, mut velocity) = (position[from..end].to_vec(), velocity[from..end].to_vec());
-        let (here, all) = (at - from, end - from);
-        let around =
-            |position: &[Vector<D>]| [position[here - reach..here].to_vec(), position[here..(here + reach).min(all)].to_vec()];
-        let mut seam = vec![around(&position)];
-        let mut known = 0..all;
-        for number in 0..self.strides.len() - 1 {
-            // Where neighbours are no longer known, particles stay behind.
-            let first = if from == 0 { 0 } else { known.start + reach };
-            let last = if end == count { all } else { known.end - reach };
-            let [before, after] = [known.start..first, last..known.end].map(|beside| position[beside].to_vec());
-            let stride = Self { strides: &self.strides[number..=number], ..*self };
-            let (before, after) = (vec![[before, vec![]]], vec![[vec![], after]]);
-            stride.part(&mut position[first..last], &mut velocity[first..last], &before, &after, from + first);
-            seam.push(around(&position));
-            known = first..last;
+impl Bound {
+    /// After it has moved so far.
+    fn after(self, way: usize) -> usize {
+        match self {
+            Self::Fixed(at) => at,
+            Self::Rising(at) => at + way,
+            Self::Falling(at) => at - way,
         }
-        seam
+    }
+}
+
+impl Sweep<'_> {
+    /// In so many parts at most.
+    fn in_parts<const D: usize>(&self, position: &mut [Vector<D>], velocity: &mut [Vector<D>], parts: usize) -> [bool; 2] {
+        let count = position.len();
+        // What is left on either side of where two parts meet.
+        let left = 2 * self.strides.len() * self.lattice.reach;
+        let parts = parts.min(count / (2 * left).max(1)).max(1);
+        let ends: Vec<usize> = (0..=parts).map(|part| part * count / parts).collect();
+        let middles: Vec<usize> = ends.windows(2).map(|ends| ends[0].midpoint(ends[1])).collect();
+        let alone = cut(position, velocity, &ends, |part| {
+            let lower = if part.start == 0 { Bound::Fixed } else { Bound::Rising };
+            let upper = if part.end == count { Bound::Fixed } else { Bound::Falling };
+            [lower(0), upper(part.len())]
+        });
+        let finite = self.all(alone);
+        let left = cut(position, velocity, &middles, |between| {
+            let at = ends[ends.partition_point(|&end| end < between.start)] - between.start;
+            [Bound::Falling(at), Bound::Rising(at)]
+        });
+        both(finite, self.all(left))
     }
 
-    fn part(
-        &self,
-        position: &mut [Vector<D>],
-        velocity: &mut [Vector<D>],
-        before: &Seam<D>,
-        after: &Seam<D>,
-        from: usize,
-    ) -> [bool; 2] {
-        let count = position.len();
-        let mut passes: Vec<_> = self.strides.iter().map(|&stride| Pass::new(*self, stride, from)).collect();
-        let length = self.lattice.block().min(count.max(self.lattice.reach));
-        let blocks = count.div_ceil(length);
-        // The particles of a block.
-        let block = |number: usize| (number * length).min(count)..((number + 1) * length).min(count);
-        // Whether a block is one of the first or the last so many.
-        let outer = |number: usize, many: usize| number < many || number + many >= blocks;
-        let ring = |number| Ring::new(length, beside(before, number, 0));
-        let mut rings: Vec<_> = (0..passes.len()).map(ring).collect();
-        let mut inverse_mass = InverseMass::new(&self.mass[from..from + count], length);
-        let (alone, mut finite) = (passes.len() == 1, [true; 2]);
-        for front in 0..blocks + passes.len() {
-            let coming = block(front);
-            if alone || outer(front, 3) {
-                rings[0].open(coming.clone()).copy_from_slice(&position[coming.clone()]);
-                rings[0].put_after(front, count, beside(after, 0, 1));
-            }
-            let (position, later) = position.split_at_mut(coming.end);
+    fn all<const D: usize>(&self, tiles: Vec<Tile<'_, D>>) -> [bool; 2] {
+        if let [_] = tiles[..] {
+            return tiles.into_iter().map(|tile| self.take(tile)).fold([true; 2], both);
+        }
+        tiles.into_par_iter().map(|tile| self.take(tile)).reduce(|| [true; 2], both)
+    }
+
+    /// Takes all strides, as far as the tile goes.
+    fn take<const D: usize>(&self, tile: Tile<'_, D>) -> [bool; 2] {
+        let Tile { from, position, velocity, bounds } = tile;
+        let reach = self.lattice.reach;
+        let range = |ways: usize| bounds[0].after(ways * reach)..bounds[1].after(ways * reach);
+        let pass = |(number, &stride)| Pass::new(*self, stride, from, [range(2 * number + 1), range(2 * number + 2)]);
+        let mut passes: Vec<_> = self.strides.iter().enumerate().map(pass).collect();
+        let mut inverse_mass = InverseMass::new(&self.mass[from..from + position.len()]);
+        let (mut front, mut finite) = (range(1).start, [true; 2]);
+        while passes.last().is_some_and(|last| !last.drifting.is_empty()) {
+            front += BLOCK;
+            // What pulls at particles before this one is where it has to be.
+            let mut known = front;
             for (number, pass) in passes.iter_mut().enumerate() {
-                let Some(now) = front.checked_sub(number + 1) else { break };
-                let particles = block(now);
-                let (velocity, later_velocity) = velocity.split_at_mut(particles.end);
-                let velocity = &mut velocity[particles.start..];
-                let soon = if number == 0 { [&*later, &*later_velocity] } else { [&[][..]; 2] };
-                let (done, rest) = rings.split_at_mut(number + 1);
-                let in_ring = done[number].around(particles.start);
-                let moved = if let Some(next) = rest.first_mut() {
-                    // Positions are overwritten by the last stride, behind the others: before the first, neighbours are where they
-                    // belong, but beyond a seam.
-                    let in_place = number == 0 && !outer(now, 2);
-                    let around = if in_place { Around { position, own: particles.start } } else { in_ring };
-                    let moved = pass.take(around, particles.start, &mut inverse_mass, next.open(particles.clone()), velocity, soon);
-                    next.put_after(now, count, beside(after, number + 1, 1));
-                    moved
-                } else {
-                    pass.take(in_ring, particles.start, &mut inverse_mass, &mut position[particles], velocity, soon)
-                };
-                finite = both(finite, moved);
+                finite = both(finite, pass.kick(known, position, velocity, &mut inverse_mass, number == 0));
+                finite[1] &= pass.drift(position, velocity);
+                known = pass.done(&pass.drifting);
             }
         }
         finite
     }
 }
 
-/// Where particles beside a part are, on one side of its seam, before the stride of this number.
-fn beside<const D: usize>(seam: &Seam<D>, number: usize, side: usize) -> &[Vector<D>] {
-    seam.get(number).map_or(&[], |both_sides| &both_sides[side])
+/// Pieces of both arrays between these cuts, and what of each is moved.
+fn cut<'a, const D: usize>(
+    position: &'a mut [Vector<D>],
+    velocity: &'a mut [Vector<D>],
+    cuts: &[usize],
+    bounds: impl Fn(Range<usize>) -> [Bound; 2],
+) -> Vec<Tile<'a, D>> {
+    let (mut position, mut velocity) = (&mut position[cuts[0]..], &mut velocity[cuts[0]..]);
+    let mut tiles = vec![];
+    for ends in cuts.windows(2) {
+        let piece = ends[0]..ends[1];
+        let (positions, later) = position.split_at_mut(piece.len());
+        let (velocities, later_velocities) = velocity.split_at_mut(piece.len());
+        tiles.push(Tile { from: piece.start, position: positions, velocity: velocities, bounds: bounds(piece) });
+        (position, velocity) = (later, later_velocities);
+    }
+    tiles
 }
 
-/// One stride on its way through a part of the memory.
+/// One stride on its way through a tile.
 struct Pass<'a> {
     lattice: &'a Lattice,
-    /// What is held of the particles still to come.
-    held: &'a [Held],
     stride: Stride,
-    /// The first particle of the part.
+    /// The first particle of the tile.
     from: usize,
+    /// Particles still to be kicked.
+    kicked: Range<usize>,
+    /// Particles that still have to drift.
+    drifting: Range<usize>,
+    /// The first stretch of those still to be kicked.
     stretch: usize,
+    /// What is held of particles that still have to drift.
+    held: &'a [Held],
 }
 
 impl<'a> Pass<'a> {
-    fn new(Gathering { lattice, held, .. }: Gathering<'a>, stride: Stride, from: usize) -> Self {
-        let held = &held[held.partition_point(|held| held.particle < from)..];
-        Self { lattice, held, stride, from, stretch: lattice.first_stretch(from) }
+    fn new(sweep: Sweep<'a>, stride: Stride, from: usize, [kicked, drifting]: [Range<usize>; 2]) -> Self {
+        let Sweep { lattice, held, .. } = sweep;
+        let held = &held[held.partition_point(|held| held.particle < from + drifting.start)..];
+        Self { lattice, stride, from, stretch: lattice.first_stretch(from + kicked.start), kicked, drifting, held }
     }
 
-    /// Moves the next particles, from `start` of the part on, to `position`.
-    fn take<const D: usize>(
+    /// The end of the particles all of whose neighbours are done, where these still are to be done.
+    fn done(&self, rest: &Range<usize>) -> usize {
+        if rest.is_empty() { usize::MAX } else { rest.start.saturating_sub(self.lattice.reach) }
+    }
+
+    /// Kicks the next particles, up to this one at most; tells whether every velocity was finite after the kick that was owed, and
+    /// whether it is.
+    fn kick<const D: usize>(
         &mut self,
-        around: Around<'_, D>,
-        start: usize,
-        inverse_mass: &mut InverseMass<'_, D>,
-        position: &mut [Vector<D>],
+        end: usize,
+        position: &[Vector<D>],
         velocity: &mut [Vector<D>],
-        soon: [&[Vector<D>]; 2],
+        inverse_mass: &mut InverseMass<'_, D>,
+        first: bool,
     ) -> [bool; 2] {
-        let Stride { moves, end, .. } = self.stride;
-        let first = self.from + start;
-        let particles = first..first + position.len();
+        let Moves { owed, kick, .. } = self.stride.moves;
+        let (start, end) = (self.kicked.start, self.kicked.end.min(end));
         let mut finite = [true; 2];
-        if particles.is_empty() {
+        if start >= end {
             return finite;
         }
-        inverse_mass.see(start..start + position.len());
-        for (piece, neighbours) in self.lattice.pieces(particles.clone(), &mut self.stretch) {
-            let (mut start, end) = (piece.start - first, piece.end - first);
-            while start < end {
-                let around = around.from(start);
-                let own = start..start + around.straight(neighbours, self.lattice.reach, end - start);
-                start = own.end;
-                let place = Place { around, inverse_mass: inverse_mass.from(own.start) };
-                let soon = soon.map(|soon| soon.get(own.start..).unwrap_or(&[]));
-                let (position, velocity) = (&mut position[own.clone()], &mut velocity[own]);
-                let moved = match moves.owed {
-                    Some(_) => self.lattice.gather(neighbours, place, Move::<true>::new(position, velocity, soon, moves)),
-                    None => self.lattice.gather(neighbours, place, Move::<false>::new(position, velocity, soon, moves)),
-                };
-                finite = both(finite, moved);
+        self.kicked.start = end;
+        inverse_mass.see(start..end);
+        let (velocity, later) = velocity.split_at_mut(end);
+        // The first goes where others have not been.
+        let soon = if first { [position.get(end + self.lattice.reach..).unwrap_or(&[]), later] } else { [&[][..]; 2] };
+        for (piece, neighbours) in self.lattice.pieces(self.from + start..self.from + end, &mut self.stretch) {
+            let (piece_start, piece_end) = (piece.start - self.from, piece.end - self.from);
+            let soon = soon.map(|soon| soon.get(piece_start - start..).unwrap_or(&[]));
+            let place = Place { position, own: piece_start, inverse_mass: inverse_mass.from(piece_start - start) };
+            let velocity = &mut velocity[piece_start..piece_end];
+            match owed {
+                Some(owed) => finite[0] &= self.lattice.gather(neighbours, place, Kick::once(velocity, owed, soon).and(kick)),
+                None => finite[1] &= self.lattice.gather(neighbours, place, Kick::once(velocity, kick, soon)),
             }
         }
-        let (among, later) = self.held.split_at(self.held.iter().take_while(|held| held.particle < particles.end).count());
+        finite
+    }
+
+    /// Lets those particles drift that nobody will ask for where they are; tells whether every position is finite.
+    fn drift<const D: usize>(&mut self, position: &mut [Vector<D>], velocity: &mut [Vector<D>]) -> bool {
+        let (start, end) = (self.drifting.start, self.drifting.end.min(self.done(&self.kicked)));
+        if start >= end {
+            return true;
+        }
+        self.drifting.start = end;
+        let drift = self.stride.moves.drift;
+        let (positions, velocities) = (Vector::components_mut(&mut position[start..end]), Vector::components(&velocity[start..end]));
+        let finite = eight::run(self.lattice.instructions, Drift { position: positions, velocity: velocities, drift });
+        let (among, later) = self.held.split_at(self.held.iter().take_while(|held| held.particle < self.from + end).count());
         self.held = later;
         for held in among {
-            let n = held.particle - first;
-            (position[n][held.axis], velocity[n][held.axis]) = held.at(end);
+            let n = held.particle - self.from;
+            (position[n][held.axis], velocity[n][held.axis]) = held.at(self.stride.end);
         }
         finite
     }
@@ -247,21 +280,15 @@ mod tests {
                 confined: false,
             })
             .collect();
-        let gathering = |strides| Gathering { lattice: &lattice, mass: &particles.mass, held: &held, strides };
-        let nothing = || Seam::new();
+        let sweep = |strides| Sweep { lattice: &lattice, mass: &particles.mass, held: &held, strides };
         let mut alone = particles.clone();
         for stride in strides.chunks(1) {
-            gathering(stride).part(&mut alone.position, &mut alone.velocity, &nothing(), &nothing(), 0);
+            assert_eq!(sweep(stride).in_parts(&mut alone.position, &mut alone.velocity, 1), [true; 2]);
         }
-        let together = gathering(&strides);
-        for at in [width, 301, 256.max(width), 1024, 3300, 3540, 3595] {
+        for parts in 1..=5 {
             let mut found = particles.clone();
-            let seam = together.seam(&found.position, &found.velocity, at);
-            let (first, second) = found.position.split_at_mut(at);
-            let (first_velocity, second_velocity) = found.velocity.split_at_mut(at);
-            assert_eq!(together.part(first, first_velocity, &nothing(), &seam, 0), [true; 2]);
-            together.part(second, second_velocity, &seam, &nothing(), at);
-            assert!(found == alone, "width {width}, seam at {at}");
+            assert_eq!(sweep(&strides).in_parts(&mut found.position, &mut found.velocity, parts), [true; 2]);
+            assert!(found == alone, "width {width}, {parts} parts");
         }
     }
 }
