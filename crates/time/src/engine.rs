@@ -39,7 +39,9 @@ pub(crate) struct Kept<const D: usize> {
     steps: u64,
     position: Vec<Vector<D>>,
     velocity: Vec<Vector<D>>,
+    /// Where there is a periodic axis.
     images: Vec<[i64; D]>,
+    /// Where they are those of these positions.
     acceleration: Vec<Vector<D>>,
     links: Vec<Link>,
     fresh: bool,
@@ -242,25 +244,33 @@ impl<const D: usize> TimeDriven<D> {
     }
 
     pub(crate) fn keep(&mut self) {
-        let System { particles, images, acceleration, fresh, .. } = &self.system;
+        let System { boundary, particles, images, acceleration, fresh, .. } = &self.system;
         self.kept.steps = self.steps;
         self.kept.position.clone_from(&particles.position);
         self.kept.velocity.clone_from(&particles.velocity);
-        self.kept.images.clone_from(images);
-        self.kept.acceleration.clone_from(acceleration);
+        if boundary.axes.contains(&Axis::Periodic) {
+            self.kept.images.clone_from(images);
+        }
         self.kept.fresh = *fresh;
+        if *fresh {
+            self.kept.acceleration.clone_from(acceleration);
+        }
         self.kept.links.clear();
         self.kept.links.extend_from_slice(self.stepper.links());
     }
 
     fn restore(&mut self) {
-        let System { particles, images, acceleration, fresh, .. } = &mut self.system;
+        let System { boundary, particles, images, acceleration, fresh, .. } = &mut self.system;
         self.steps = self.kept.steps;
         particles.position.clone_from(&self.kept.position);
         particles.velocity.clone_from(&self.kept.velocity);
-        images.clone_from(&self.kept.images);
-        acceleration.clone_from(&self.kept.acceleration);
+        if boundary.axes.contains(&Axis::Periodic) {
+            images.clone_from(&self.kept.images);
+        }
         *fresh = self.kept.fresh;
+        if *fresh {
+            acceleration.clone_from(&self.kept.acceleration);
+        }
         self.stepper.set_links(&self.kept.links);
         self.system.forget_owed();
     }

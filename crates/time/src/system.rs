@@ -183,12 +183,23 @@ impl<const D: usize> System<D> {
 
     /// Does what was put off.
     pub(crate) fn settle(&mut self, time: f64) {
-        if let Some(owed) = self.owed.take() {
+        self.catch_up(); // who is told what went wrong asks `check`
+        let Some(owed) = self.owed.take() else { return };
+        if let Some(finite) = self.kick_alone(owed) {
+            self.doubtful |= !finite;
+        } else {
             self.accelerate(time, 0.0);
             self.kick(owed);
-        } else {
-            self.catch_up(); // who is told what went wrong asks `check`
         }
+    }
+
+    /// A kick by the force itself, where it takes strides and nobody has found the accelerations.
+    fn kick_alone(&mut self, dt: f64) -> Option<bool> {
+        if self.fresh || self.strides_at_once() == 0 {
+            return None;
+        }
+        let Self { boundary, particles, images, forces, held, .. } = self;
+        strider(forces)?.kick(State { boundary, particles, images, held }, dt)
     }
 
     /// [`accelerate`](Self::accelerate), [`kick_and_drift`](Self::kick_and_drift), and [`hold`](Self::hold) at `end`: by the force

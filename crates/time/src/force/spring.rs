@@ -197,6 +197,11 @@ impl<const D: usize> Strider<D> for Springs {
         };
         Progress { taken: strides.len(), finite }
     }
+
+    fn kick(&mut self, state: State<'_, D>, dt: f64) -> Option<bool> {
+        let State { boundary, particles, held, .. } = state;
+        self.lattice(boundary).map(|lattice| lattice.kick(particles, held, dt))
+    }
 }
 
 impl<const D: usize> Force<D> for Springs {

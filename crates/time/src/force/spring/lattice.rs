@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use super::Spring;
 use super::gather::{Add, Alike, Each, Gather, Kick, Sink};
 use crate::constraint::Held;
-use crate::lanes::eight;
+use crate::lanes::eight::{self, LANES};
 use crate::threads::{self, CHUNK};
 
 /// Particles handled together.
@@ -160,6 +160,9 @@ impl Lattice {
     }
 
     pub(super) fn gather<const D: usize, S: Sink>(&self, neighbours: &[Neighbour], place: Place<'_, D>, sink: S) -> S::Output {
+        if sink.len() < LANES {
+            return Self::gather_few(neighbours, place, sink);
+        }
         match *neighbours {
             [] => self.gather_from::<D, S, 0>([], place, sink),
             [a] => self.gather_from([a], place, sink),
@@ -171,6 +174,21 @@ impl Lattice {
             [a, b, c, d, e, f, g] => self.gather_from([a, b, c, d, e, f, g], place, sink),
             [a, b, c, d, e, f, g, h, ..] => self.gather_from([a, b, c, d, e, f, g, h], place, sink),
         }
+    }
+
+    /// As [`Gather`], but for so few numbers that preparing for it would take longer.
+    fn gather_few<const D: usize, S: Sink>(neighbours: &[Neighbour], place: Place<'_, D>, mut sink: S) -> S::Output {
+        let Place { position, own, inverse_mass } = place;
+        let position = Vector::components(position);
+        for n in 0..sink.len() {
+            let own = D * own + n;
+            let pull = |neighbour: &Neighbour| {
+                neighbour.stiffness * (position[own.wrapping_add_signed(D as isize * neighbour.offset)] - position[own])
+            };
+            let a = neighbours.iter().map(pull).reduce(|a, pull| a + pull).unwrap_or(0.0);
+            sink.take_one(n, a * inverse_mass.of(n));
+        }
+        sink.finish([0.0; LANES])
     }
 
     fn gather_from<const D: usize, S: Sink, const N: usize>(
@@ -209,6 +227,15 @@ pub(super) enum Inverse<'a> {
     Alike(f64),
     /// For each component of the particles.
     Each(&'a [f64]),
+}
+
+impl Inverse<'_> {
+    fn of(self, n: usize) -> f64 {
+        match self {
+            Self::Alike(one) => one,
+            Self::Each(all) => all[n],
+        }
+    }
 }
 
 /// [`Inverse`] masses of the particles of a block.
