@@ -24,7 +24,7 @@ const MOST: usize = 8;
 /// Bytes that may be at work: a second cache.
 const AT_WORK: usize = 1 << 20;
 /// Particles handled together.
-const BLOCK: usize = 1024;
+const BLOCK: usize = 256;
 /// Parts of the memory a thread: whoever is held up leaves some to the others.
 const PARTS_A_THREAD: usize = 2;
 
@@ -125,7 +125,7 @@ impl Sweep<'_> {
         let mut inverse_mass = InverseMass::new(&self.mass[from..from + position.len()]);
         let (mut front, mut finite) = (range(1).start, [true; 2]);
         while passes.last().is_some_and(|last| !last.drifting.is_empty()) {
-            front += BLOCK;
+            front += BLOCK.max(reach);
             // What pulls at particles before this one is where it has to be.
             let mut known = front;
             for (number, pass) in passes.iter_mut().enumerate() {
