@@ -7,7 +7,6 @@ mod lattice;
 mod run;
 mod scatter;
 mod strides;
-mod sweep;
 
 use super::{Force, Tensor, add_product, finite, massive, not_negative};
 use crate::image::NearestImage;
@@ -94,6 +93,8 @@ impl Spring {
 const NEAR: usize = 2048;
 /// Springs between particles farther apart would need windows that no cache holds.
 const FARTHEST: usize = 16_384;
+/// Parts of the memory a thread: whoever is held up leaves some to the others.
+const PARTS_A_THREAD: usize = 2;
 
 /// Any number of springs.
 ///

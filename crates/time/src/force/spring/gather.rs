@@ -1,35 +1,39 @@
 //! What pulls at the particles of a lattice, eight numbers at a time, and what is done with it.
 
-use corpuscle_core::Vector;
 use corpuscle_core::instructions::prefetch;
 
 use crate::lanes::eight::{Eight, InEights, LANES};
 
+/// A vector that begins where a line of the cache does is in one line; those read or written in two take twice as long.
+const LINE: usize = 64;
+
 /// `a = (sum_n k_n (r_n - r)) / m`, number by number: whatever the dimension, neighbours are as far apart. The sum begins with the
 /// first neighbour.
-pub(super) struct Gather<'a, M, S, const N: usize> {
+pub(super) struct Gather<'a, M, A, const N: usize> {
     pub(super) stiffness: [f64; N],
     pub(super) near: [&'a [f64]; N],
     pub(super) own: &'a [f64],
     pub(super) inverse_mass: M,
-    /// Where accelerations go.
-    pub(super) sink: S,
+    /// What accelerations act on.
+    pub(super) target: &'a mut [f64],
+    pub(super) action: A,
 }
 
 /// What every sum is multiplied by.
 pub(super) trait Factor {
-    /// Group `g` of them.
-    fn group<V: Eight>(&self, g: usize) -> V;
-    /// One of them, by its number.
+    /// Those of eight numbers.
+    fn eight<V: Eight>(&self, first: usize) -> V;
+    /// That of a number.
     fn one(&self, n: usize) -> f64;
 }
 
 /// The same for all.
+#[derive(Clone, Copy)]
 pub(super) struct Alike(pub(super) f64);
 
 impl Factor for Alike {
     #[inline(always)]
-    fn group<V: Eight>(&self, _: usize) -> V {
+    fn eight<V: Eight>(&self, _: usize) -> V {
         V::splat(self.0)
     }
 
@@ -40,12 +44,14 @@ impl Factor for Alike {
 }
 
 /// One for each number.
+#[derive(Clone, Copy)]
 pub(super) struct Each<'a>(pub(super) &'a [f64]);
 
 impl Factor for Each<'_> {
     #[inline(always)]
-    fn group<V: Eight>(&self, g: usize) -> V {
-        V::new(*self.0[g..].first_chunk().unwrap())
+    fn eight<V: Eight>(&self, first: usize) -> V {
+        let eight = &self.0[first..first + LANES];
+        V::new(std::array::from_fn(|lane| eight[lane]))
     }
 
     #[inline(always)]
@@ -54,146 +60,117 @@ impl Factor for Each<'_> {
     }
 }
 
-/// What takes accelerations.
-pub(super) trait Sink {
-    /// What it has to tell of them all.
-    type Output;
-
-    /// How many it takes.
-    fn len(&self) -> usize;
-    fn head(&self) -> usize;
-    /// Group `g` of them; `doubt` is zero at first.
-    fn take<V: Eight>(&mut self, g: usize, a: V, doubt: &mut V);
-    /// One of those after the groups, by its number.
-    fn take_one(&mut self, n: usize, a: f64);
-    /// After the last.
-    fn finish(self, doubt: [f64; LANES]) -> Self::Output;
+/// What an acceleration does to a number.
+pub(super) trait Action: Copy {
+    /// What becomes of `x`, and what is finite if all is well.
+    fn act<V: Eight>(self, x: V, a: V) -> [V; 2];
+    /// The same for one number.
+    fn act_on_one(self, x: f64, a: f64) -> [f64; 2];
+    /// Whatever there is to do before eight numbers.
+    #[inline(always)]
+    fn prepare(self, _first: usize) {}
 }
 
-impl<M: Factor, S: Sink, const N: usize> InEights for Gather<'_, M, S, N> {
-    type Output = S::Output;
+/// Numbers up to the first line of a cache, those in whole lines, and the rest.
+#[inline(always)]
+fn lines(numbers: &[f64]) -> [usize; 2] {
+    let head = numbers.as_ptr().align_offset(LINE).min(numbers.len());
+    [head, head + (numbers.len() - head) / LANES * LANES]
+}
+
+impl<M: Factor, A: Action, const N: usize> InEights for Gather<'_, M, A, N> {
+    /// Whether all is well.
+    type Output = bool;
 
     #[inline(always)]
-    fn run<V: Eight>(self) -> S::Output {
-        let Self { stiffness, near, own, inverse_mass, mut sink } = self;
-        let head = sink.head();
-        let (mut stiff, mut eights) = ([V::splat(0.0); N], [&[][..]; N]);
-        let groups = (own.len() - head) / LANES;
-        for n in 0..N {
-            (stiff[n], eights[n]) = (V::splat(stiffness[n]), &near[n][head..].as_chunks::<LANES>().0[..groups]);
-        }
-        let own_eights = &own[head..].as_chunks::<LANES>().0[..groups];
-        let mut doubt = V::splat(0.0);
-        for last in (0..head).chain(head + groups * LANES..own.len()) {
+    fn run<V: Eight>(self) -> bool {
+        let Self { stiffness, near, own, inverse_mass, target, action } = self;
+        let [head, tail] = lines(target);
+        let mut doubt = 0.0;
+        for n in (0..head).chain(tail..target.len()) {
             let mut a = 0.0;
-            for n in 0..N {
-                let pull = stiffness[n] * (near[n][last] - own[last]);
-                a = if n == 0 { pull } else { a + pull };
+            for k in 0..N {
+                let pull = stiffness[k] * (near[k][n] - own[n]);
+                a = if k == 0 { pull } else { a + pull };
             }
-            sink.take_one(last, a * inverse_mass.one(last));
+            let [x, seen] = action.act_on_one(target[n], a * inverse_mass.one(n));
+            (target[n], doubt) = (x, doubt + seen);
         }
+        let targets = target[head..tail].as_chunks_mut::<LANES>().0;
+        let groups = targets.len();
+        let (mut stiff, mut eights) = ([V::splat(0.0); N], [&[][..]; N]);
+        for k in 0..N {
+            (stiff[k], eights[k]) = (V::splat(stiffness[k]), &near[k][head..].as_chunks::<LANES>().0[..groups]);
+        }
+        let own = &own[head..].as_chunks::<LANES>().0[..groups];
+        let mut doubts = V::splat(0.0);
         for g in 0..groups {
-            let (r, mut a) = (V::new(own_eights[g]), V::splat(0.0));
-            for n in 0..N {
-                let pull = stiff[n].mul(V::new(eights[n][g]).sub(r));
-                a = if n == 0 { pull } else { a.add(pull) };
+            let first = head + LANES * g;
+            action.prepare(first);
+            let (r, mut a) = (V::new(own[g]), V::splat(0.0));
+            for k in 0..N {
+                let pull = stiff[k].mul(V::new(eights[k][g]).sub(r));
+                a = if k == 0 { pull } else { a.add(pull) };
             }
-            sink.take(head + g * LANES, a.mul(inverse_mass.group(head + g * LANES)), &mut doubt);
+            let [x, seen] = action.act(V::new(targets[g]), a.mul(inverse_mass.eight(first)));
+            targets[g] = x.lanes();
+            doubts = doubts.add(seen);
         }
-        sink.finish(doubt.lanes())
+        (doubt + doubts.lanes().iter().sum::<f64>()).is_finite()
     }
 }
 
-/// Adds them to others.
-pub(super) struct Add<'a>(pub(super) &'a mut [f64]);
+/// Adds it.
+#[derive(Clone, Copy)]
+pub(super) struct Add;
 
-impl Sink for Add<'_> {
-    type Output = ();
-
-    fn len(&self) -> usize {
-        self.0.len()
-    }
+impl Action for Add {
     #[inline(always)]
-    fn head(&self) -> usize {
-        self.0.as_ptr().align_offset(64).min(self.0.len())
+    fn act<V: Eight>(self, x: V, a: V) -> [V; 2] {
+        [x.add(a), V::splat(0.0)]
     }
 
     #[inline(always)]
-    fn take<V: Eight>(&mut self, g: usize, a: V, _: &mut V) {
-        let sum = &mut *self.0[g..].first_chunk_mut().unwrap();
-        *sum = V::new(*sum).add(a).lanes();
+    fn act_on_one(self, x: f64, a: f64) -> [f64; 2] {
+        [x + a, 0.0]
     }
-
-    #[inline(always)]
-    fn take_one(&mut self, n: usize, a: f64) {
-        self.0[n] += a;
-    }
-
-    fn finish(self, _: [f64; LANES]) {}
 }
 
-/// `v += a first`, then `v += a second` if there are two kicks; asks for what will soon be needed.
+/// `v += a first`, which is to be finite, then `v += a second` if there are two kicks; asks for what will soon be needed.
+#[derive(Clone, Copy)]
 pub(super) struct Kick<'a, const TWO: bool> {
-    velocity: &'a mut [f64],
-    first: f64,
-    second: f64,
-    soon: [&'a [f64]; 2],
-    /// Sum of velocities: finite only if all of them are. That of groups is kept in registers.
-    doubt: f64,
+    pub(super) first: f64,
+    pub(super) second: f64,
+    pub(super) soon: [&'a [f64]; 2],
 }
 
 impl<'a> Kick<'a, false> {
-    pub(super) fn once<const D: usize>(velocity: &'a mut [Vector<D>], kick: f64, soon: [&'a [Vector<D>]; 2]) -> Self {
-        Self { velocity: Vector::components_mut(velocity), first: kick, second: 0.0, soon: soon.map(Vector::components), doubt: 0.0 }
-    }
-
-    pub(super) fn and(self, second: f64) -> Kick<'a, true> {
-        let Self { velocity, first, soon, doubt, .. } = self;
-        Kick { velocity, first, second, soon, doubt }
+    pub(super) fn one(kick: f64, soon: [&'a [f64]; 2]) -> Self {
+        Self { first: kick, second: 0.0, soon }
     }
 }
 
-impl<const TWO: bool> Sink for Kick<'_, TWO> {
-    /// Whether every velocity is finite after the first kick.
-    type Output = bool;
-
-    fn len(&self) -> usize {
-        self.velocity.len()
-    }
+impl<const TWO: bool> Action for Kick<'_, TWO> {
     #[inline(always)]
-    fn head(&self) -> usize {
-        self.velocity.as_ptr().align_offset(64).min(self.velocity.len())
+    fn act<V: Eight>(self, v: V, a: V) -> [V; 2] {
+        let v = v.add(a.mul(V::splat(self.first)));
+        [if TWO { v.add(a.mul(V::splat(self.second))) } else { v }, v]
     }
 
     #[inline(always)]
-    fn take<V: Eight>(&mut self, g: usize, a: V, doubt: &mut V) {
-        prefetch(self.soon[0], g);
-        prefetch(self.soon[1], g);
-        let velocity = &mut *self.velocity[g..].first_chunk_mut::<LANES>().unwrap();
-        let mut v = V::new(*velocity).add(a.mul(V::splat(self.first)));
-        *doubt = doubt.add(v);
-        if TWO {
-            v = v.add(a.mul(V::splat(self.second)));
-        }
-        *velocity = v.lanes();
+    fn act_on_one(self, v: f64, a: f64) -> [f64; 2] {
+        let v = v + a * self.first;
+        [if TWO { v + a * self.second } else { v }, v]
     }
 
     #[inline(always)]
-    fn take_one(&mut self, n: usize, a: f64) {
-        let v = &mut self.velocity[n];
-        *v += a * self.first;
-        self.doubt += *v;
-        if TWO {
-            *v += a * self.second;
-        }
-    }
-
-    fn finish(self, doubt: [f64; LANES]) -> bool {
-        (doubt.iter().sum::<f64>() + self.doubt).is_finite()
+    fn prepare(self, first: usize) {
+        prefetch(self.soon[0], first);
+        prefetch(self.soon[1], first);
     }
 }
 
-/// `r += v drift`, number by number. Tells whether every `r` is finite.
+/// `r += v drift`, number by number.
 pub(super) struct Drift<'a> {
     pub(super) position: &'a mut [f64],
     pub(super) velocity: &'a [f64],
@@ -201,30 +178,24 @@ pub(super) struct Drift<'a> {
 }
 
 impl InEights for Drift<'_> {
+    /// Whether every `r` is finite.
     type Output = bool;
 
     #[inline(always)]
     fn run<V: Eight>(self) -> bool {
         let Self { position, velocity, drift } = self;
+        let [head, tail] = lines(position);
         let mut doubt = 0.0;
-        let head = position.as_ptr().align_offset(64).min(position.len());
-        let ((head, position), (head_v, velocity)) = (position.split_at_mut(head), velocity.split_at(head));
-        for (r, v) in head.iter_mut().zip(head_v) {
-            *r += v * drift;
-            doubt += *r;
+        for n in (0..head).chain(tail..position.len()) {
+            position[n] += velocity[n] * drift;
+            doubt += position[n];
         }
-        let (positions, last_positions) = position.as_chunks_mut::<LANES>();
-        let (velocities, last_velocities) = velocity.as_chunks::<LANES>();
-        let (by, mut doubts) = (V::splat(drift), V::splat(0.0));
-        for (position, velocity) in positions.iter_mut().zip(velocities) {
-            let r = V::new(*position).add(V::new(*velocity).mul(by));
-            doubts = doubts.add(r);
-            *position = r.lanes();
+        let (eights, mut doubts) = (position[head..tail].as_chunks_mut::<LANES>().0, V::splat(0.0));
+        for (r, &v) in eights.iter_mut().zip(velocity[head..tail].as_chunks::<LANES>().0) {
+            let moved = V::new(*r).add(V::new(v).mul(V::splat(drift)));
+            doubts = doubts.add(moved);
+            *r = moved.lanes();
         }
-        for (r, v) in last_positions.iter_mut().zip(last_velocities) {
-            *r += v * drift;
-            doubt += *r;
-        }
-        (doubts.lanes().iter().sum::<f64>() + doubt).is_finite()
+        (doubt + doubts.lanes().iter().sum::<f64>()).is_finite()
     }
 }

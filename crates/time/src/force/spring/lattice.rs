@@ -9,7 +9,7 @@ use corpuscle_core::{Instructions, Particles, Vector};
 use rayon::prelude::*;
 
 use super::Spring;
-use super::gather::{Add, Alike, Each, Gather, Kick, Sink};
+use super::gather::{Action, Add, Alike, Each, Gather, Kick};
 use crate::constraint::Held;
 use crate::lanes::eight::{self, LANES};
 use crate::threads::{self, CHUNK};
@@ -81,8 +81,7 @@ impl Lattice {
     pub(super) fn accelerate<const D: usize>(&self, particles: &Particles<D>, acceleration: &mut [Vector<D>]) {
         let Particles { position, mass, .. } = particles;
         self.everywhere(position, mass, acceleration, |neighbours, place, acceleration| {
-            self.gather(neighbours, place, Add(Vector::components_mut(acceleration)));
-            true
+            self.gather(neighbours, place, Vector::components_mut(acceleration), Add)
         });
     }
 
@@ -91,7 +90,7 @@ impl Lattice {
         let Particles { position, velocity, mass, .. } = particles;
         let before: Vec<f64> = held.iter().map(|held| velocity[held.particle][held.axis]).collect();
         let finite = self.everywhere(position, mass, velocity, |neighbours, place, velocity| {
-            self.gather(neighbours, place, Kick::once(velocity, dt, [&[]; 2]))
+            self.gather(neighbours, place, Vector::components_mut(velocity), Kick::one(dt, [&[]; 2]))
         });
         for (held, before) in held.iter().zip(before) {
             velocity[held.particle][held.axis] = before;
@@ -159,53 +158,63 @@ impl Lattice {
         })
     }
 
-    pub(super) fn gather<const D: usize, S: Sink>(&self, neighbours: &[Neighbour], place: Place<'_, D>, sink: S) -> S::Output {
-        if sink.len() < LANES {
-            return Self::gather_few(neighbours, place, sink);
+    pub(super) fn gather<const D: usize, A: Action>(
+        &self,
+        neighbours: &[Neighbour],
+        place: Place<'_, D>,
+        target: &mut [f64],
+        action: A,
+    ) -> bool {
+        if target.len() < LANES {
+            return Self::gather_few(neighbours, place, target, action);
         }
         match *neighbours {
-            [] => self.gather_from::<D, S, 0>([], place, sink),
-            [a] => self.gather_from([a], place, sink),
-            [a, b] => self.gather_from([a, b], place, sink),
-            [a, b, c] => self.gather_from([a, b, c], place, sink),
-            [a, b, c, d] => self.gather_from([a, b, c, d], place, sink),
-            [a, b, c, d, e] => self.gather_from([a, b, c, d, e], place, sink),
-            [a, b, c, d, e, f] => self.gather_from([a, b, c, d, e, f], place, sink),
-            [a, b, c, d, e, f, g] => self.gather_from([a, b, c, d, e, f, g], place, sink),
-            [a, b, c, d, e, f, g, h, ..] => self.gather_from([a, b, c, d, e, f, g, h], place, sink),
+            [] => self.gather_from::<D, A, 0>([], place, target, action),
+            [a] => self.gather_from([a], place, target, action),
+            [a, b] => self.gather_from([a, b], place, target, action),
+            [a, b, c] => self.gather_from([a, b, c], place, target, action),
+            [a, b, c, d] => self.gather_from([a, b, c, d], place, target, action),
+            [a, b, c, d, e] => self.gather_from([a, b, c, d, e], place, target, action),
+            [a, b, c, d, e, f] => self.gather_from([a, b, c, d, e, f], place, target, action),
+            [a, b, c, d, e, f, g] => self.gather_from([a, b, c, d, e, f, g], place, target, action),
+            [a, b, c, d, e, f, g, h, ..] => self.gather_from([a, b, c, d, e, f, g, h], place, target, action),
         }
     }
 
     /// As [`Gather`], but for so few numbers that preparing for it would take longer.
-    fn gather_few<const D: usize, S: Sink>(neighbours: &[Neighbour], place: Place<'_, D>, mut sink: S) -> S::Output {
+    fn gather_few<const D: usize, A: Action>(neighbours: &[Neighbour], place: Place<'_, D>, target: &mut [f64], action: A) -> bool {
         let Place { position, own, inverse_mass } = place;
-        let position = Vector::components(position);
-        for n in 0..sink.len() {
+        let (position, mut doubt) = (Vector::components(position), 0.0);
+        for n in 0..target.len() {
             let own = D * own + n;
             let pull = |neighbour: &Neighbour| {
                 neighbour.stiffness * (position[own.wrapping_add_signed(D as isize * neighbour.offset)] - position[own])
             };
             let a = neighbours.iter().map(pull).reduce(|a, pull| a + pull).unwrap_or(0.0);
-            sink.take_one(n, a * inverse_mass.of(n));
+            let [x, seen] = action.act_on_one(target[n], a * inverse_mass.of(n));
+            (target[n], doubt) = (x, doubt + seen);
         }
-        sink.finish([0.0; LANES])
+        doubt.is_finite()
     }
 
-    fn gather_from<const D: usize, S: Sink, const N: usize>(
+    fn gather_from<const D: usize, A: Action, const N: usize>(
         &self,
         neighbours: [Neighbour; N],
         place: Place<'_, D>,
-        sink: S,
-    ) -> S::Output {
+        target: &mut [f64],
+        action: A,
+    ) -> bool {
         let Place { position, own, inverse_mass } = place;
-        let components = |first: usize| &Vector::components(&position[first..])[..sink.len()];
+        let components = |first: usize| &Vector::components(&position[first..])[..target.len()];
         let near = neighbours.map(|neighbour| components(own.strict_add_signed(neighbour.offset)));
         let (stiffness, own) = (neighbours.map(|neighbour| neighbour.stiffness), components(own));
         match inverse_mass {
-            Inverse::Alike(one) => eight::run(self.instructions, Gather { stiffness, near, own, inverse_mass: Alike(one), sink }),
+            Inverse::Alike(one) => {
+                eight::run(self.instructions, Gather { stiffness, near, own, inverse_mass: Alike(one), target, action })
+            }
             Inverse::Each(all) => {
-                let inverse_mass = Each(&all[..sink.len()]);
-                eight::run(self.instructions, Gather { stiffness, near, own, inverse_mass, sink })
+                let inverse_mass = Each(&all[..target.len()]);
+                eight::run(self.instructions, Gather { stiffness, near, own, inverse_mass, target, action })
             }
         }
     }

@@ -4,11 +4,12 @@
 //! and no later spring asks where these are: they can be moved at once. Accelerations live in a window that slides along.
 
 use corpuscle_core::{Boundary, Particles, Vector};
+use rayon::prelude::*;
 
-use super::sweep::{Sweep, in_parts};
-use super::{NEAR, Place, Springs};
+use super::{NEAR, PARTS_A_THREAD, Place, Springs};
 use crate::constraint::{self, Held};
 use crate::motion::{Moves, Stride, both};
+use crate::threads;
 
 /// Particles that pass before a window starts anew, at least; and four blocks.
 const WINDOW: usize = 4096;
@@ -23,7 +24,7 @@ impl Springs {
         Stride { moves, end, .. }: Stride,
     ) -> [bool; 2] {
         let Particles { position, velocity, mass, .. } = &mut *particles;
-        let finite = in_parts(&Scattering { springs: self, boundary, mass, held, moves }, position, velocity, NEAR, self.reach);
+        let finite = Scattering { springs: self, boundary, mass, held, moves }.in_parts(position, velocity);
         for held in held {
             held.apply(end, particles);
         }
@@ -31,6 +32,7 @@ impl Springs {
     }
 }
 
+/// What two parts of the memory have to know of each other before particles of either move.
 #[derive(Default)]
 struct Seam<const D: usize> {
     /// Where the first particles of the later part are.
@@ -47,10 +49,27 @@ struct Scattering<'a, const D: usize> {
     moves: Moves,
 }
 
-impl<const D: usize> Sweep<D> for Scattering<'_, D> {
-    type Seam = Seam<D>;
+impl<const D: usize> Scattering<'_, D> {
+    /// In as many parts as there are threads for, each of whole blocks and longer than springs reach: a seam looks back into one part
+    /// only. Every sum has the terms, and their order, that it has in one part.
+    fn in_parts(&self, position: &mut [Vector<D>], velocity: &mut [Vector<D>]) -> [bool; 2] {
+        let (count, reach) = (position.len(), self.springs.reach);
+        let parts = if threads::are_worth_it(count) { PARTS_A_THREAD * rayon::current_num_threads() } else { 1 };
+        let length = count.div_ceil(NEAR).div_ceil(parts).max(reach.div_ceil(NEAR)).max(1) * NEAR;
+        if length >= count {
+            return self.part(position, velocity, &Seam::default(), &Seam::default(), 0);
+        }
+        let mut seams: Vec<Seam<D>> = (length..count).into_par_iter().step_by(length).map(|at| self.seam(position, at)).collect();
+        seams.insert(0, Seam::default());
+        seams.push(Seam::default());
+        let parts = position.par_chunks_mut(length).zip(velocity.par_chunks_mut(length)).zip(seams.par_windows(2)).enumerate();
+        let moved = parts
+            .map(|(number, ((position, velocity), seams))| self.part(position, velocity, &seams[0], &seams[1], number * length));
+        moved.reduce(|| [true; 2], both)
+    }
 
-    fn seam(&self, position: &[Vector<D>], _: &[Vector<D>], at: usize) -> Seam<D> {
+    /// The seam at particle `at`, where a block begins.
+    fn seam(&self, position: &[Vector<D>], at: usize) -> Seam<D> {
         let Self { springs, boundary, .. } = *self;
         let from = at - springs.reach.next_multiple_of(NEAR);
         let end = (at + springs.reach).min(position.len());
@@ -63,6 +82,8 @@ impl<const D: usize> Sweep<D> for Scattering<'_, D> {
         Seam { position: position[at..end].to_vec(), acceleration: acceleration.split_off(at - from) }
     }
 
+    /// Moves the particles of one part, from particle `from` on, between two seams; tells what
+    /// [`kick_and_drift`](crate::motion::kick_and_drift) does.
     fn part(
         &self,
         position: &mut [Vector<D>],

@@ -1,7 +1,7 @@
 use corpuscle_core::{Engine, Random};
 
 use super::*;
-use crate::{Drive, Integrator, Pin, Signal, TimeDriven};
+use crate::{Drive, Integrator, Pin, Signal, TimeDriven, UniformField};
 
 /// A net with springs in both directions, in shuffled order and with ends swapped; and a few across, or as many along both diagonals.
 fn net(side: usize, like: Spring, regular: bool) -> (Particles<2>, Vec<Spring>) {
@@ -76,8 +76,8 @@ fn runs_are_the_springs_they_were_made_of() {
     }
 }
 
-/// Whoever stops after every step has all accelerations found and kept; on the way they are found as particles move. Either way, on
-/// any number of threads, the bits are the same.
+/// Beside another force all accelerations are found and kept; else they are found as particles move, in several steps at once unless
+/// somebody stops after each. Any way, on any number of threads, the bits are the same.
 #[test]
 fn particles_move_while_springs_are_stretched() {
     let hooke = Spring::new(0, 1, 1.3, 0.0);
@@ -92,7 +92,7 @@ fn particles_move_while_springs_are_stretched() {
         (170, Spring { cubic: 0.1, ..hooke }, false),
     ] {
         for (axis, alike) in [(Axis::Open, false), (Axis::Open, true), (Axis::Periodic, false)] {
-            let engine = |integrator| {
+            let engine = |integrator, accompanied: bool| {
                 let (mut beads, springs) = net(side, like, regular);
                 if alike {
                     beads.mass.fill(0.7);
@@ -101,20 +101,25 @@ fn particles_move_while_springs_are_stretched() {
                 let pins = (0..side).rev().map(|x| Pin { particle: x * side + 7, axes: [true, x % 2 == 0] }).collect();
                 let signal = Signal::Sine { amplitude: 0.5, angular_frequency: 1.0, phase: 0.3, ramp: 0.0 };
                 let drives = if axis == Axis::Open { vec![Drive { particle: 5, axis: 1, signal }] } else { vec![] };
-                let engine = TimeDriven::new(boundary, beads, vec![Box::new(Springs::new(springs))], integrator).unwrap();
+                let mut forces: Vec<Box<dyn Force<2>>> = vec![Box::new(Springs::new(springs))];
+                if accompanied {
+                    forces.push(Box::new(UniformField::new(Vector::ZERO)));
+                }
+                let engine = TimeDriven::new(boundary, beads, forces, integrator).unwrap();
                 engine.with_pins(pins).unwrap().with_drives(drives).unwrap()
             };
             for integrator in [Integrator::VelocityVerlet { dt: 0.02 }, Integrator::Yoshida4 { dt: 0.02 }] {
-                let mut expected = engine(integrator);
-                for step in 1..=7 {
-                    expected.advance(0.02 * f64::from(step), &mut ()).unwrap();
-                }
-                for threads in [1, 2, 3] {
+                let mut expected = engine(integrator, true);
+                expected.advance(0.38, &mut ()).unwrap();
+                for (threads, stop_every) in [(1, 19), (2, 19), (3, 19), (1, 1), (2, 1), (3, 7)] {
                     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-                    let mut found = engine(integrator);
-                    pool.install(|| found.advance(0.14, &mut ())).unwrap();
-                    assert_eq!(found.steps(), 7);
-                    assert!(found.particles() == expected.particles(), "{side}, {axis:?}, {}, {threads}", integrator.name());
+                    let mut found = engine(integrator, false);
+                    while found.steps() < 19 {
+                        let to = 0.02 * (found.steps() + stop_every).min(19) as f64;
+                        pool.install(|| found.advance(to, &mut ())).unwrap();
+                    }
+                    let how = format!("{} threads, a stop every {stop_every}", threads);
+                    assert!(found.particles() == expected.particles(), "{side}, {axis:?}, {}, {how}", integrator.name());
                 }
             }
         }
