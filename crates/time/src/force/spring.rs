@@ -69,6 +69,27 @@ impl Spring {
         self.stiffness * x * x * (0.5 + x * (self.quadratic / 3.0 + x * self.cubic / 4.0))
     }
 
+    /// Names what is wrong, but not the spring.
+    fn validate<const D: usize>(&self, boundary: &Boundary<D>) -> Result<(), Invalid> {
+        let Self { first, second, stiffness, rest_length, damping, quadratic, cubic } = *self;
+        if first == second {
+            return Err(Invalid::new("ends", first, "two different particles"));
+        }
+        not_negative("stiffness", stiffness)?;
+        not_negative("rest length", rest_length)?;
+        not_negative("damping", damping)?;
+        finite("quadratic coefficient", quadratic)?;
+        finite("cubic coefficient", cubic)?;
+        for k in (0..D).filter(|&k| boundary.axes[k] == Axis::Periodic) {
+            let half = 0.5 * boundary.extent()[k];
+            if rest_length >= half {
+                let expected = format!("less than half the periodic box, {half} along axis {k}");
+                return Err(Invalid::new("rest length", rest_length, expected));
+            }
+        }
+        Ok(())
+    }
+
     fn obeys_hooke(&self) -> bool {
         self.quadratic == 0.0 && self.cubic == 0.0
     }
@@ -240,21 +261,8 @@ impl<const D: usize> Force<D> for Springs {
         for (number, spring) in self.given.iter().enumerate() {
             massive("a spring", spring.first, particles)?;
             massive("a spring", spring.second, particles)?;
-            if spring.first == spring.second {
-                return Err(Invalid::new(format!("ends of spring {number}"), spring.first, "two different particles"));
-            }
-            not_negative(&format!("stiffness of spring {number}"), spring.stiffness)?;
-            not_negative(&format!("rest length of spring {number}"), spring.rest_length)?;
-            not_negative(&format!("damping of spring {number}"), spring.damping)?;
-            finite(&format!("quadratic coefficient of spring {number}"), spring.quadratic)?;
-            finite(&format!("cubic coefficient of spring {number}"), spring.cubic)?;
-            for k in (0..D).filter(|&k| boundary.axes[k] == Axis::Periodic) {
-                let half = 0.5 * boundary.extent()[k];
-                if spring.rest_length >= half {
-                    let expected = format!("less than half the periodic box, {half} along axis {k}");
-                    return Err(Invalid::new(format!("rest length of spring {number}"), spring.rest_length, expected));
-                }
-            }
+            let of_this = |invalid: Invalid| Invalid { key: format!("{} of spring {number}", invalid.key), ..invalid };
+            spring.validate(boundary).map_err(of_this)?;
         }
         Ok(())
     }
