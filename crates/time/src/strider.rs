@@ -34,8 +34,8 @@ pub trait Strider<const D: usize> {
     /// Takes these strides, or only the first of them.
     fn stride(&mut self, state: State<'_, D>, strides: &[Stride]) -> Progress;
 
-    /// `v += a dt` but for held coordinates, by accelerations that are not kept; tells whether every `v` is finite. `None`, and nothing
-    /// is done, where that takes no less time than if they are.
+    /// `v += a dt` but for held coordinates, by the accelerations at the positions, which are not kept; tells whether every `v` is finite.
+    /// `None`, and nothing is done, where that takes no less time than if they are.
     fn kick(&mut self, _: State<'_, D>, _dt: f64) -> Option<bool> {
         None
     }

@@ -14,7 +14,7 @@ use crate::constraint::Held;
 use crate::lanes::eight::{self, LANES};
 use crate::threads::{self, CHUNK};
 
-/// Particles handled together.
+/// Particles whose accelerations are found together.
 const BLOCK: usize = 256;
 /// Particles that must have the same neighbours, one after the other, in the mean.
 const REGULAR: usize = 16;

@@ -42,8 +42,17 @@ impl Lattice {
     /// does, of all of them together.
     pub(super) fn sweep<const D: usize>(&self, particles: &mut Particles<D>, held: &[Held], strides: &[Stride]) -> [bool; 2] {
         let Particles { position, velocity, mass, .. } = particles;
-        let parts = if threads::are_worth_it(mass.len()) { PARTS_A_THREAD * rayon::current_num_threads() } else { 1 };
-        Sweep { lattice: self, mass, held, strides }.in_parts(position, velocity, parts)
+        let threads = if threads::are_worth_it(mass.len()) { rayon::current_num_threads() } else { 1 };
+        // The fewer, the shorter may parts be: one for each thread at least.
+        let together = if threads == 1 { strides.len() } else { mass.len() / (self.shortest_part(1) * threads).max(1) };
+        let few = strides.chunks(together.max(1));
+        let sweep = |strides| Sweep { lattice: self, mass, held, strides }.in_parts(position, velocity, PARTS_A_THREAD * threads);
+        few.map(sweep).fold([true; 2], both)
+    }
+
+    /// Particles of a part between two others, for so many strides: each recedes from both as far as a kick and a drift reach.
+    fn shortest_part(&self, strides: usize) -> usize {
+        4 * strides * self.reach
     }
 }
 
@@ -56,8 +65,8 @@ struct Sweep<'a> {
     strides: &'a [Stride],
 }
 
-/// Particles that follow one another, and which of them are moved: from kick to drift to kick fewer where others follow that are
-/// not known, and more where those left them.
+/// Particles that follow one another, and which of them are moved: between bounds that move as far as springs reach before every
+/// kick and before every drift, inwards where others follow that are not known, outwards where those left some.
 struct Tile<'a, const D: usize> {
     /// The first of them.
     from: usize,
@@ -89,9 +98,7 @@ impl Sweep<'_> {
     /// In so many parts at most.
     fn in_parts<const D: usize>(&self, position: &mut [Vector<D>], velocity: &mut [Vector<D>], parts: usize) -> [bool; 2] {
         let count = position.len();
-        // What is left on either side of where two parts meet.
-        let left = 2 * self.strides.len() * self.lattice.reach;
-        let parts = parts.min(count / (2 * left).max(1)).max(1);
+        let parts = parts.min(count / self.lattice.shortest_part(self.strides.len()).max(1)).max(1);
         let ends: Vec<usize> = (0..=parts).map(|part| part * count / parts).collect();
         let middles: Vec<usize> = ends.windows(2).map(|ends| ends[0].midpoint(ends[1])).collect();
         let alone = cut(position, velocity, &ends, |part| {
@@ -100,11 +107,11 @@ impl Sweep<'_> {
             [lower(0), upper(part.len())]
         });
         let finite = self.all(alone);
-        let left = cut(position, velocity, &middles, |between| {
+        let rest = cut(position, velocity, &middles, |between| {
             let at = ends[ends.partition_point(|&end| end < between.start)] - between.start;
             [Bound::Falling(at), Bound::Rising(at)]
         });
-        both(finite, self.all(left))
+        both(finite, self.all(rest))
     }
 
     fn all<const D: usize>(&self, tiles: Vec<Tile<'_, D>>) -> [bool; 2] {
@@ -185,8 +192,8 @@ impl<'a> Pass<'a> {
         if rest.is_empty() { usize::MAX } else { rest.start.saturating_sub(self.lattice.reach) }
     }
 
-    /// Kicks the next particles, up to this one at most; tells whether every velocity was finite after the kick that was owed, and
-    /// whether it is.
+    /// Kicks the next particles, up to this one at most; tells whether every velocity was finite after the kick that was owed, and, if
+    /// none was, whether it is.
     fn kick<const D: usize>(
         &mut self,
         end: usize,
@@ -249,49 +256,58 @@ mod tests {
 
     use super::super::Spring;
     use super::*;
-    use crate::motion::Moves;
+    use crate::Signal;
 
-    /// Strides one by one over all particles, and together in parts, the last of them as small as they may be.
+    /// Strides one by one over all particles, and any number of them together in parts, the last of them as small as they may be. Some
+    /// particles are free, some held, by one axis or by all, also where parts meet.
     #[test]
     fn strides_taken_together_in_parts_are_those_taken_alone() {
+        in_parts_and_alone(1, 4000);
         in_parts_and_alone(60, 160);
         // A row longer than the shortest block.
         in_parts_and_alone(300, 120);
     }
 
     fn in_parts_and_alone(width: usize, height: usize) {
-        let mut random = Random::new(7, 0);
+        let (mut random, count) = (Random::new(7, 0), width * height);
         let mut particles = Particles::<3>::new();
         let mut springs = vec![];
-        for i in 0..width * height {
+        for i in 0..count {
             let mut vector = || Vector::from_fn(|_| random.normal());
             particles.push(vector(), vector(), if i < 2000 { 1.0 } else { 2.0 }, 0.0, 0);
-            springs.extend(
-                [i % width, i / width]
-                    .iter()
-                    .zip([1, width])
-                    .filter(|(place, _)| **place > 0)
-                    .map(|(_, by)| Spring::new(i - by, i, 1.0, 0.0)),
-            );
+            let before = [(i % width > 0, 1), (i >= width, width)];
+            let free = 3100..3300;
+            springs.extend(before.iter().filter(|(there, by)| *there && !free.contains(&i) && !free.contains(&(i - by))).map(
+                |(_, by)| {
+                    let stiffness = if *by == 1 { 1.0 } else { 0.7 };
+                    Spring::new(i - by, i, stiffness, 0.0)
+                },
+            ));
         }
         let lattice = Lattice::new(&springs).unwrap();
-        let held = [3, 250, 260, 1700].map(|i| Held::new(i, i % 3, None, 0.0, &particles).unwrap());
-        let strides: Vec<_> = (0..6)
-            .map(|n| Stride {
-                moves: Moves { owed: (n % 2 == 0).then_some(0.05), kick: 0.05, drift: 0.1 },
-                end: f64::from(n),
-                confined: false,
-            })
+        let signal = Some(Signal::Sine { amplitude: 0.5, angular_frequency: 1.0, phase: 0.3, ramp: 0.0 });
+        let meeting = (1..8).flat_map(|parts| (1..parts).map(move |part| part * count / parts));
+        let at = meeting.flat_map(|i| [i - 1, i]).chain([0, 3, 250, 1700, 3200, count - 1]);
+        let mut held: Vec<_> = at
+            .flat_map(|i| (0..=2 * (i % 2)).map(move |axis| (i, axis)))
+            .map(|(i, axis)| Held::new(i, axis, signal.filter(|_| i % 3 == 0), 0.0, &particles).unwrap())
             .collect();
+        held.sort_by_key(|held| held.particle);
+        let stride = |n: u8| Stride {
+            moves: Moves { owed: (n % 3 != 1).then_some(0.05), kick: 0.05, drift: 0.1 },
+            end: f64::from(n),
+            confined: false,
+        };
+        let strides: Vec<_> = (0..8).map(stride).collect();
         let sweep = |strides| Sweep { lattice: &lattice, mass: &particles.mass, held: &held, strides };
         let mut alone = particles.clone();
-        for stride in strides.chunks(1) {
-            assert_eq!(sweep(stride).in_parts(&mut alone.position, &mut alone.velocity, 1), [true; 2]);
-        }
-        for parts in 1..=7 {
-            let mut found = particles.clone();
-            assert_eq!(sweep(&strides).in_parts(&mut found.position, &mut found.velocity, parts), [true; 2]);
-            assert!(found == alone, "width {width}, {parts} parts");
+        for (number, stride) in strides.iter().enumerate() {
+            assert_eq!(sweep(std::slice::from_ref(stride)).in_parts(&mut alone.position, &mut alone.velocity, 1), [true; 2]);
+            for parts in 1..8 {
+                let mut found = particles.clone();
+                assert_eq!(sweep(&strides[..=number]).in_parts(&mut found.position, &mut found.velocity, parts), [true; 2]);
+                assert!(found == alone, "width {width}, {} strides, {parts} parts", number + 1);
+            }
         }
     }
 }

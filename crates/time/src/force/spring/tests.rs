@@ -118,7 +118,7 @@ fn particles_move_while_springs_are_stretched() {
                         let to = 0.02 * (found.steps() + stop_every).min(19) as f64;
                         pool.install(|| found.advance(to, &mut ())).unwrap();
                     }
-                    let how = format!("{} threads, a stop every {stop_every}", threads);
+                    let how = format!("{threads} threads, a stop every {stop_every}");
                     assert!(found.particles() == expected.particles(), "{side}, {axis:?}, {}, {how}", integrator.name());
                 }
             }
