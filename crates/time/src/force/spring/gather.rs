@@ -170,11 +170,11 @@ impl<const TWO: bool> Action for Kick<'_, TWO> {
     }
 }
 
-/// `r += v drift`, number by number.
+/// `r += v dt`, number by number.
 pub(super) struct Drift<'a> {
     pub(super) position: &'a mut [f64],
     pub(super) velocity: &'a [f64],
-    pub(super) drift: f64,
+    pub(super) dt: f64,
 }
 
 impl InEights for Drift<'_> {
@@ -183,16 +183,16 @@ impl InEights for Drift<'_> {
 
     #[inline(always)]
     fn run<V: Eight>(self) -> bool {
-        let Self { position, velocity, drift } = self;
+        let Self { position, velocity, dt } = self;
         let [head, tail] = lines(position);
         let mut doubt = 0.0;
         for n in (0..head).chain(tail..position.len()) {
-            position[n] += velocity[n] * drift;
+            position[n] += velocity[n] * dt;
             doubt += position[n];
         }
         let (eights, mut doubts) = (position[head..tail].as_chunks_mut::<LANES>().0, V::splat(0.0));
         for (r, &v) in eights.iter_mut().zip(velocity[head..tail].as_chunks::<LANES>().0) {
-            let moved = V::new(*r).add(V::new(v).mul(V::splat(drift)));
+            let moved = V::new(*r).add(V::new(v).mul(V::splat(dt)));
             doubts = doubts.add(moved);
             *r = moved.lanes();
         }

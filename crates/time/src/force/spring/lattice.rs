@@ -122,9 +122,9 @@ impl Lattice {
             all
         };
         if threads::are_worth_it(target.len()) {
-            target.par_chunks_mut(CHUNK).enumerate().map(one).reduce(|| true, |one, other| one && other)
+            target.par_chunks_mut(CHUNK).enumerate().map(one).reduce(|| true, |one, other| one & other)
         } else {
-            target.chunks_mut(CHUNK).enumerate().map(one).fold(true, |one, other| one && other)
+            target.chunks_mut(CHUNK).enumerate().map(one).fold(true, |one, other| one & other)
         }
     }
 

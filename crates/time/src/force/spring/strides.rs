@@ -220,8 +220,9 @@ impl<'a> Pass<'a> {
             let velocity = Vector::components_mut(&mut velocity[piece_start..piece_end]);
             let soon = soon.map(Vector::components);
             match owed {
-                Some(first) => {
-                    finite[0] &= self.lattice.gather(neighbours, place, velocity, Kick::<true> { first, second: kick, soon })
+                Some(owed) => {
+                    let kicks = Kick::<true> { first: owed, second: kick, soon };
+                    finite[0] &= self.lattice.gather(neighbours, place, velocity, kicks);
                 }
                 None => finite[1] &= self.lattice.gather(neighbours, place, velocity, Kick::one(kick, soon)),
             }
@@ -236,10 +237,10 @@ impl<'a> Pass<'a> {
             return true;
         }
         self.drifting.start = end;
-        let drift = self.stride.moves.drift;
+        let dt = self.stride.moves.drift;
         let (positions, velocities) =
             (Vector::components_mut(&mut position[start..end]), Vector::components(&velocity[start..end]));
-        let finite = eight::run(self.lattice.instructions, Drift { position: positions, velocity: velocities, drift });
+        let finite = eight::run(self.lattice.instructions, Drift { position: positions, velocity: velocities, dt });
         let (among, later) = self.held.split_at(self.held.iter().take_while(|held| held.particle < self.from + end).count());
         self.held = later;
         for held in among {
