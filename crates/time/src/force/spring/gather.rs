@@ -4,7 +4,7 @@ use corpuscle_core::instructions::prefetch;
 
 use crate::lanes::eight::{Eight, InEights, LANES};
 
-/// A vector that begins where a line of the cache does is in one line; those read or written in two take twice as long.
+/// A vector that begins where a line of the cache does is in one line; those that lie in two take longer.
 const LINE: usize = 64;
 
 /// `a = (sum_n k_n (r_n - r)) / m`, number by number: whatever the dimension, neighbours are as far apart. The sum begins with the

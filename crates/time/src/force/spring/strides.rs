@@ -310,5 +310,12 @@ mod tests {
                 assert!(found == alone, "width {width}, {} strides, {parts} parts", number + 1);
             }
         }
+        // So many threads that there is no part for each of them unless fewer strides are taken together.
+        for threads in [2, 16] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let mut found = particles.clone();
+            assert_eq!(pool.install(|| lattice.sweep(&mut found, &held, &strides)), [true; 2]);
+            assert!(found == alone, "width {width}, {threads} threads");
+        }
     }
 }
