@@ -148,6 +148,11 @@ impl Held {
         (particles.position[self.particle][self.axis], particles.velocity[self.particle][self.axis]) = self.at(time);
     }
 
+    /// Whether it moves.
+    pub(crate) fn is_driven(&self) -> bool {
+        self.signal.is_some()
+    }
+
     pub(crate) fn longest_step(&self) -> f64 {
         self.signal.map_or(f64::INFINITY, |signal| signal.longest_step())
     }

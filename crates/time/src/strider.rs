@@ -28,8 +28,9 @@ pub struct Progress {
 /// one after the other.
 pub trait Strider<const D: usize> {
     /// How many strides should be asked for at once, where nobody looks at the particles in between; 0 where none can be taken. The
-    /// engine keeps a state every so often, and asks for no more than lead to the next. Neither positions nor velocities matter.
-    fn strides_at_once(&self, boundary: &Boundary<D>, particles: &Particles<D>, held: usize) -> usize;
+    /// engine keeps a state every so often, and asks for no more than lead to the next. Neither positions nor velocities matter:
+    /// it is found anew whenever something else has changed, before the next stride, and with it may be whatever else does not change.
+    fn strides_at_once(&mut self, state: &State<'_, D>) -> usize;
 
     /// Takes these strides, or only the first of them.
     fn stride(&mut self, state: State<'_, D>, strides: &[Stride]) -> Progress;

@@ -223,8 +223,9 @@ impl<const D: usize> System<D> {
 
     /// How many strides the force takes together; 0 where none takes any.
     fn strides_at_once(&mut self) -> usize {
-        let Self { boundary, particles, forces, held, .. } = self;
-        let ask = || strider(forces).map_or(0, |strider| strider.strides_at_once(boundary, particles, held.len()));
+        let Self { boundary, particles, images, forces, held, .. } = self;
+        let state = State { boundary, particles, images, held };
+        let ask = || strider(forces).map_or(0, |strider| strider.strides_at_once(&state));
         (*self.at_once.get_or_insert_with(ask)).min(self.patience)
     }
 

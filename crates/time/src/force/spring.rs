@@ -4,15 +4,19 @@ use corpuscle_core::{Axis, Boundary, Instructions, Invalid, Particles, Vector};
 
 mod gather;
 mod lattice;
+mod masses;
+mod plan;
 mod run;
 mod scatter;
 mod strides;
+mod walk;
 
 use super::{Force, Tensor, add_product, finite, massive, not_negative};
 use crate::image::NearestImage;
 use crate::motion::{Stride, both};
 use crate::strider::{Progress, State, Strider};
 use lattice::Lattice;
+use plan::Plan;
 use run::{Place, Run, Stretch};
 
 /// A spring, with a dashpot beside it.
@@ -121,11 +125,13 @@ const PARTS_A_THREAD: usize = 2;
 ///
 /// Springs alike whose ends follow one another, as those of a chain or of the rows of a membrane, are found and handled
 /// together: nothing has to be looked up for each of them.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Springs {
     given: Vec<Spring>,
     /// How linear springs of a regular arrangement are handled; all others, or at periodic axes, are runs.
     lattice: Option<Lattice>,
+    /// What the lattice has to know of the particles, until something else changes than places and velocities.
+    plan: Option<Plan>,
     runs: Vec<Run>,
     /// Where the runs of each block of first ends begin, and the last ends.
     blocks: Vec<usize>,
@@ -133,6 +139,12 @@ pub struct Springs {
     reach: usize,
     damped: bool,
     instructions: Instructions,
+}
+
+impl PartialEq for Springs {
+    fn eq(&self, other: &Self) -> bool {
+        self.given == other.given
+    }
 }
 
 impl Springs {
@@ -144,7 +156,7 @@ impl Springs {
         let blocks = (0..=last).map(|block| runs.partition_point(|run| run.first() / NEAR < block)).collect();
         let reach = runs.iter().map(Run::reach).max().unwrap_or(0);
         let damped = springs.iter().any(|spring| spring.damping != 0.0);
-        Self { given: springs, lattice, runs, blocks, reach, damped, instructions: Instructions::detect() }
+        Self { given: springs, lattice, plan: None, runs, blocks, reach, damped, instructions: Instructions::detect() }
     }
 
     /// The springs.
@@ -201,7 +213,9 @@ impl Springs {
 impl<const D: usize> Strider<D> for Springs {
     /// One where springs are no lattice, or something else moves particles, too; none where ends are too far apart in memory, or
     /// there is friction, which would need the accelerations before.
-    fn strides_at_once(&self, boundary: &Boundary<D>, particles: &Particles<D>, _: usize) -> usize {
+    fn strides_at_once(&mut self, state: &State<'_, D>) -> usize {
+        let State { boundary, particles, held, .. } = state;
+        self.plan = self.lattice.as_ref().map(|lattice| Plan::new::<D>(lattice, &particles.mass, held));
         if self.reach > FARTHEST || self.damped {
             return 0;
         }
@@ -211,8 +225,8 @@ impl<const D: usize> Strider<D> for Springs {
 
     fn stride(&mut self, state: State<'_, D>, strides: &[Stride]) -> Progress {
         let State { boundary, particles, held, .. } = state;
-        let finite = if let Some(lattice) = self.lattice(boundary) {
-            lattice.sweep(particles, held, strides)
+        let finite = if let (Some(lattice), Some(plan)) = (self.lattice(boundary), &self.plan) {
+            lattice.sweep(particles, plan, strides)
         } else {
             let one = |stride: &Stride| self.scatter(boundary, particles, held, *stride);
             strides.iter().map(one).fold([true; 2], both)
@@ -221,10 +235,10 @@ impl<const D: usize> Strider<D> for Springs {
     }
 
     fn kick(&mut self, state: State<'_, D>, dt: f64) -> Option<bool> {
-        let State { boundary, particles, held, .. } = state;
+        let State { boundary, particles, .. } = state;
         // Where memory takes the time; else accelerations kept for the next step save as much as they cost.
         let lattice = self.lattice(boundary).filter(|lattice| lattice.strides_at_once::<D>(particles.len()) > 1)?;
-        Some(lattice.kick(particles, held, dt))
+        Some(lattice.kick(particles, self.plan.as_ref()?, dt))
     }
 }
 

@@ -3,7 +3,7 @@
 //! Grains feel the masses and nobody feels them: where the masses will be is known without them, and so any number of steps can be
 //! taken with some grains, which stay in the nearest cache meanwhile, before the next are looked at.
 
-use corpuscle_core::{Axis, Boundary, Particles, Vector};
+use corpuscle_core::{Axis, Particles, Vector};
 
 use super::grains::{Source, WORTH_THREADS};
 use super::lanes::inverse_cube_from;
@@ -28,10 +28,11 @@ const MOST_MASSES: usize = 16;
 const FAR: f64 = (1u64 << 60) as f64;
 
 impl<const D: usize> Strider<D> for Gravity<D> {
-    fn strides_at_once(&self, boundary: &Boundary<D>, particles: &Particles<D>, held: usize) -> usize {
+    fn strides_at_once(&mut self, state: &State<'_, D>) -> usize {
+        let State { boundary, particles, held, .. } = state;
         let masses = particles.mass.iter().filter(|mass| **mass > 0.0).count();
         let worth_it = particles.len() > FEW && (1..=MOST_MASSES).contains(&masses) && GRAINS_TO_A_MASS * masses <= particles.len();
-        if worth_it && boundary.axes == [Axis::Open; D] && held == 0 { AT_ONCE } else { 0 }
+        if worth_it && boundary.axes == [Axis::Open; D] && held.is_empty() { AT_ONCE } else { 0 }
     }
 
     fn stride(&mut self, state: State<'_, D>, strides: &[Stride]) -> Progress {

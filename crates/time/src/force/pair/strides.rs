@@ -45,8 +45,8 @@ struct Crossing<const D: usize> {
 }
 
 impl<P: PairPotential, const D: usize> Strider<D> for PairForce<P, D> {
-    fn strides_at_once(&self, boundary: &Boundary<D>, _: &Particles<D>, held: usize) -> usize {
-        if boundary.axes.contains(&Axis::Walls) || held > 0 { 0 } else { usize::MAX }
+    fn strides_at_once(&mut self, state: &State<'_, D>) -> usize {
+        if state.boundary.axes.contains(&Axis::Walls) || !state.held.is_empty() { 0 } else { usize::MAX }
     }
 
     /// Stops before a stride after which something would not be a finite number.

@@ -5,7 +5,7 @@ use corpuscle_core::instructions::prefetch;
 use crate::lanes::eight::{Eight, InEights, LANES};
 
 /// A vector that begins where a line of the cache does is in one line; those that lie in two take longer.
-const LINE: usize = 64;
+pub(super) const LINE: usize = 64;
 
 /// `a = (sum_n k_n (r_n - r)) / m`, number by number: whatever the dimension, neighbours are as far apart. The sum begins with the
 /// first neighbour.
@@ -69,6 +69,12 @@ pub(super) trait Action: Copy {
     /// Whatever there is to do before eight numbers.
     #[inline(always)]
     fn prepare(self, _first: usize) {}
+    /// The same for numbers so much later.
+    #[inline(always)]
+    #[must_use]
+    fn later(self, _by: usize) -> Self {
+        self
+    }
 }
 
 /// Numbers up to the first line of a cache, those in whole lines, and the rest.
@@ -141,13 +147,21 @@ impl Action for Add {
 pub(super) struct Kick<'a, const TWO: bool> {
     pub(super) first: f64,
     pub(super) second: f64,
-    pub(super) soon: [&'a [f64]; 2],
+    pub(super) soon: Soon<'a>,
 }
 
 impl<'a> Kick<'a, false> {
-    pub(super) fn one(kick: f64, soon: [&'a [f64]; 2]) -> Self {
+    pub(super) fn one(kick: f64, soon: Soon<'a>) -> Self {
         Self { first: kick, second: 0.0, soon }
     }
+}
+
+/// What will soon be needed.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Soon<'a> {
+    pub(super) numbers: [&'a [f64]; 2],
+    /// Each line of it is asked for after two to the power of this lines have been kicked.
+    pub(super) rarity: u32,
 }
 
 impl<const TWO: bool> Action for Kick<'_, TWO> {
@@ -165,8 +179,17 @@ impl<const TWO: bool> Action for Kick<'_, TWO> {
 
     #[inline(always)]
     fn prepare(self, first: usize) {
-        prefetch(self.soon[0], first);
-        prefetch(self.soon[1], first);
+        let Soon { numbers, rarity } = self.soon;
+        if first & ((LANES << rarity) - LANES) == 0 {
+            prefetch(numbers[0], first >> rarity);
+            prefetch(numbers[1], first >> rarity);
+        }
+    }
+
+    #[inline(always)]
+    fn later(self, by: usize) -> Self {
+        let Soon { numbers, rarity } = self.soon;
+        Self { soon: Soon { numbers: numbers.map(|soon| soon.get(by >> rarity..).unwrap_or(&[])), rarity }, ..self }
     }
 }
 

@@ -1,7 +1,8 @@
 //! Linear springs arranged regularly, as in strings and membranes: every particle gathers what pulls at it.
 //!
 //! A spring is worked out twice, once for each end. In return nothing is written but the sum, which never leaves the processor's
-//! nearest cache.
+//! nearest cache. Particles with the same neighbours are treated as one, also where few others interrupt them, as the ends of the rows
+//! of a membrane do: these are put right afterwards.
 
 use std::ops::Range;
 
@@ -9,9 +10,10 @@ use corpuscle_core::{Instructions, Particles, Vector};
 use rayon::prelude::*;
 
 use super::Spring;
-use super::gather::{Action, Add, Alike, Each, Gather, Kick};
-use crate::constraint::Held;
-use crate::lanes::eight::{self, LANES};
+use super::gather::{Action, Add, Kick, Soon};
+use super::masses::{InverseMass, Masses};
+use super::plan::Plan;
+use super::walk::{Block, Exception, Walk};
 use crate::threads::{self, CHUNK};
 
 /// Particles whose accelerations are found together.
@@ -20,11 +22,16 @@ const BLOCK: usize = 256;
 const REGULAR: usize = 16;
 /// The most springs at a particle: kernels are compiled for each number of them.
 const MOST: usize = 8;
+/// The most particles between two stretches that are treated as one.
+const EXCEPTIONS: usize = 8;
+/// So many particles has the second of them for each exception, at least.
+const TO_AN_EXCEPTION: usize = 4;
 
 /// For each particle the springs at it, in the order of their other ends; stretches of particles whose springs are alike share them.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Lattice {
-    stretches: Vec<Stretch>,
+    pub(super) stretches: Vec<Stretch>,
+    exceptions: Vec<Exception>,
     neighbours: Vec<Neighbour>,
     /// The farthest apart in memory that two ends are.
     pub(super) reach: usize,
@@ -32,17 +39,17 @@ pub(super) struct Lattice {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-struct Stretch {
-    particles: Range<usize>,
-    neighbours: Range<usize>,
+pub(super) struct Stretch {
+    pub(super) particles: Range<usize>,
+    pub(super) neighbours: Range<usize>,
 }
 
 /// What pulls at a particle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Neighbour {
     /// How much farther in memory.
-    offset: isize,
-    stiffness: f64,
+    pub(super) offset: isize,
+    pub(super) stiffness: f64,
 }
 
 impl Lattice {
@@ -73,53 +80,51 @@ impl Lattice {
                 _ => stretches.push(Stretch { particles: i..i + 1, neighbours: known..neighbours.len() }),
             }
         }
-        let regular = stretches.len() * REGULAR <= particles;
-        regular.then(|| Self { stretches, neighbours, reach, instructions: Instructions::detect() })
+        if stretches.len() * REGULAR > particles {
+            return None;
+        }
+        let (stretches, exceptions) = join(&stretches, &neighbours);
+        Some(Self { stretches, exceptions, neighbours, reach, instructions: Instructions::detect() })
     }
 
     /// Adds the accelerations.
     pub(super) fn accelerate<const D: usize>(&self, particles: &Particles<D>, acceleration: &mut [Vector<D>]) {
         let Particles { position, mass, .. } = particles;
-        self.everywhere(position, mass, acceleration, |neighbours, place, acceleration| {
-            self.gather(neighbours, place, Vector::components_mut(acceleration), Add)
-        });
+        self.everywhere(position, Masses { each: mass, of_all: None }, &self.exceptions, acceleration, Add);
     }
 
     /// `v += a dt` but for held coordinates; tells whether every `v` is finite.
-    pub(super) fn kick<const D: usize>(&self, particles: &mut Particles<D>, held: &[Held], dt: f64) -> bool {
+    pub(super) fn kick<const D: usize>(&self, particles: &mut Particles<D>, plan: &Plan, dt: f64) -> bool {
         let Particles { position, velocity, mass, .. } = particles;
-        let before: Vec<f64> = held.iter().map(|held| velocity[held.particle][held.axis]).collect();
-        let finite = self.everywhere(position, mass, velocity, |neighbours, place, velocity| {
-            self.gather(neighbours, place, Vector::components_mut(velocity), Kick::one(dt, [&[]; 2]))
-        });
-        for (held, before) in held.iter().zip(before) {
+        let before: Vec<f64> = plan.held.iter().map(|held| velocity[held.particle][held.axis]).collect();
+        let masses = Masses { each: mass, of_all: plan.mass_of_all };
+        let finite = self.everywhere(position, masses, &plan.exceptions, velocity, Kick::one(dt, Soon::default()));
+        for (held, before) in plan.held.iter().zip(before) {
             velocity[held.particle][held.axis] = before;
         }
         finite
     }
 
-    /// Does something for all particles, whose share of `target` it is given; tells whether it gave true for all.
+    /// Does something to what belongs to all particles; tells whether all is well.
     fn everywhere<const D: usize>(
         &self,
         position: &[Vector<D>],
-        mass: &[f64],
+        masses: Masses<'_>,
+        exceptions: &[Exception],
         target: &mut [Vector<D>],
-        act: impl Fn(&[Neighbour], Place<'_, D>, &mut [Vector<D>]) -> bool + Sync,
+        action: impl Action + Sync,
     ) -> bool {
         let one = |(number, target): (usize, &mut [Vector<D>])| {
             let from = number * CHUNK;
-            let mut inverse_mass = InverseMass::<D>::new(&mass[from..from + target.len()]);
-            let (mut first, mut all) = (self.first_stretch(from), true);
+            let mut inverse_mass = InverseMass::new(masses, from..from + target.len());
+            let (mut walk, mut well) = (Walk::new(self, exceptions, from), true);
             for (block, target) in target.chunks_mut(BLOCK).enumerate() {
                 let start = from + block * BLOCK;
-                let end = start + target.len();
-                inverse_mass.see(start - from..end - from);
-                for (piece, neighbours) in self.pieces(start..end, &mut first) {
-                    let place = Place { position, own: piece.start, inverse_mass: inverse_mass.from(piece.start - start) };
-                    all &= act(neighbours, place, &mut target[piece.start - start..piece.end - start]);
-                }
+                inverse_mass.see(start - from..start - from + target.len());
+                let block = Block { start, position, from: 0, inverse_mass: &inverse_mass };
+                well &= walk.act(block, target, action);
             }
-            all
+            well
         };
         if threads::are_worth_it(target.len()) {
             target.par_chunks_mut(CHUNK).enumerate().map(one).reduce(|| true, |one, other| one & other)
@@ -128,158 +133,50 @@ impl Lattice {
         }
     }
 
+    /// All particles that are not treated as those beside them; nothing is ever done to these, which are in their order.
+    pub(super) fn exceptions(&self, still: &[usize]) -> Vec<Exception> {
+        let mut own = self.exceptions.iter().peekable();
+        let mut all = Vec::with_capacity(self.exceptions.len() + still.len());
+        for &particle in still {
+            all.extend(std::iter::from_fn(|| own.next_if(|one| one.particle < particle)).cloned());
+            own.next_if(|one| one.particle == particle);
+            all.push(Exception { particle, neighbours: None });
+        }
+        all.extend(own.cloned());
+        all
+    }
+
     /// The first stretch that ends behind this particle.
     pub(super) fn first_stretch(&self, particle: usize) -> usize {
         self.stretches.partition_point(|stretch| stretch.particles.end <= particle)
     }
 
-    /// These particles in pieces whose neighbours are alike, none of which may be left out. `first` is the
-    /// [`first_stretch`](Self::first_stretch) of the first of them, and becomes that of the next after the last.
-    pub(super) fn pieces<'a>(
-        &'a self,
-        particles: Range<usize>,
-        first: &'a mut usize,
-    ) -> impl Iterator<Item = (Range<usize>, &'a [Neighbour])> {
-        let mut start = particles.start;
-        std::iter::from_fn(move || {
-            let alone = |end: usize| (start..end.min(particles.end), &[][..]);
-            let piece = match self.stretches.get(*first) {
-                _ if start >= particles.end => return None,
-                None => alone(particles.end),
-                Some(stretch) if start < stretch.particles.start => alone(stretch.particles.start),
-                Some(stretch) => {
-                    let piece = start..stretch.particles.end.min(particles.end);
-                    *first += usize::from(piece.end == stretch.particles.end);
-                    (piece, &self.neighbours[stretch.neighbours.clone()])
-                }
-            };
-            start = piece.0.end;
-            Some(piece)
-        })
-    }
-
-    pub(super) fn gather<const D: usize, A: Action>(
-        &self,
-        neighbours: &[Neighbour],
-        place: Place<'_, D>,
-        target: &mut [f64],
-        action: A,
-    ) -> bool {
-        if target.len() < LANES {
-            return Self::gather_few(neighbours, place, target, action);
-        }
-        match *neighbours {
-            [] => self.gather_from::<D, A, 0>([], place, target, action),
-            [a] => self.gather_from([a], place, target, action),
-            [a, b] => self.gather_from([a, b], place, target, action),
-            [a, b, c] => self.gather_from([a, b, c], place, target, action),
-            [a, b, c, d] => self.gather_from([a, b, c, d], place, target, action),
-            [a, b, c, d, e] => self.gather_from([a, b, c, d, e], place, target, action),
-            [a, b, c, d, e, f] => self.gather_from([a, b, c, d, e, f], place, target, action),
-            [a, b, c, d, e, f, g] => self.gather_from([a, b, c, d, e, f, g], place, target, action),
-            [a, b, c, d, e, f, g, h, ..] => self.gather_from([a, b, c, d, e, f, g, h], place, target, action),
-        }
-    }
-
-    /// As [`Gather`], but for so few numbers that preparing for it would take longer.
-    fn gather_few<const D: usize, A: Action>(neighbours: &[Neighbour], place: Place<'_, D>, target: &mut [f64], action: A) -> bool {
-        let Place { position, own, inverse_mass } = place;
-        let (position, mut doubt) = (Vector::components(position), 0.0);
-        for n in 0..target.len() {
-            let own = D * own + n;
-            let pull = |neighbour: &Neighbour| {
-                neighbour.stiffness * (position[own.wrapping_add_signed(D as isize * neighbour.offset)] - position[own])
-            };
-            let a = neighbours.iter().map(pull).reduce(|a, pull| a + pull).unwrap_or(0.0);
-            let [x, seen] = action.act_on_one(target[n], a * inverse_mass.of(n));
-            (target[n], doubt) = (x, doubt + seen);
-        }
-        doubt.is_finite()
-    }
-
-    fn gather_from<const D: usize, A: Action, const N: usize>(
-        &self,
-        neighbours: [Neighbour; N],
-        place: Place<'_, D>,
-        target: &mut [f64],
-        action: A,
-    ) -> bool {
-        let Place { position, own, inverse_mass } = place;
-        let components = |first: usize| &Vector::components(&position[first..])[..target.len()];
-        let near = neighbours.map(|neighbour| components(own.strict_add_signed(neighbour.offset)));
-        let (stiffness, own) = (neighbours.map(|neighbour| neighbour.stiffness), components(own));
-        match inverse_mass {
-            Inverse::Alike(one) => {
-                eight::run(self.instructions, Gather { stiffness, near, own, inverse_mass: Alike(one), target, action })
-            }
-            Inverse::Each(all) => {
-                let inverse_mass = Each(&all[..target.len()]);
-                eight::run(self.instructions, Gather { stiffness, near, own, inverse_mass, target, action })
-            }
-        }
+    pub(super) fn neighbours(&self, range: &Range<usize>) -> &[Neighbour] {
+        &self.neighbours[range.clone()]
     }
 }
 
-/// The particles of a piece.
-#[derive(Clone, Copy)]
-pub(super) struct Place<'a, const D: usize> {
-    /// Theirs, and those of all that pulls at them.
-    pub(super) position: &'a [Vector<D>],
-    /// Which of these is that of the first.
-    pub(super) own: usize,
-    pub(super) inverse_mass: Inverse<'a>,
-}
-
-/// `1/m`; 0 without mass, which nothing pulls at.
-#[derive(Clone, Copy)]
-pub(super) enum Inverse<'a> {
-    Alike(f64),
-    /// For each component of the particles.
-    Each(&'a [f64]),
-}
-
-impl Inverse<'_> {
-    fn of(self, n: usize) -> f64 {
-        match self {
-            Self::Alike(one) => one,
-            Self::Each(all) => all[n],
-        }
+/// Stretches whose particles have the same neighbours as one, where there are but few particles between them.
+fn join(stretches: &[Stretch], neighbours: &[Neighbour]) -> (Vec<Stretch>, Vec<Exception>) {
+    let (mut joined, mut exceptions) = (Vec::<Stretch>::new(), Vec::<Exception>::new());
+    for stretch in stretches {
+        let most = EXCEPTIONS.min(stretch.particles.len() / TO_AN_EXCEPTION);
+        let near = joined.iter().rev().take_while(|one| one.particles.end + most >= stretch.particles.start).count();
+        let near = joined.len() - near;
+        let alike = |one: &Stretch| neighbours[one.neighbours.clone()] == neighbours[stretch.neighbours.clone()];
+        let Some(number) = joined[near..].iter().position(alike) else {
+            joined.push(stretch.clone());
+            continue;
+        };
+        joined.truncate(near + number + 1);
+        let first = &mut joined[near + number].particles;
+        exceptions.truncate(exceptions.partition_point(|exception| exception.particle < first.end));
+        exceptions.extend((first.end..stretch.particles.start).map(|particle| {
+            let own = stretches.get(stretches.partition_point(|one| one.particles.end <= particle));
+            let own = own.filter(|one| one.particles.contains(&particle)).map_or(0..0, |one| one.neighbours.clone());
+            Exception { particle, neighbours: Some(own) }
+        }));
+        first.end = stretch.particles.end;
     }
-}
-
-/// [`Inverse`] masses of the particles of a block.
-pub(super) struct InverseMass<'a, const D: usize> {
-    mass: &'a [f64],
-    /// That of all particles, if they are alike: most chains and membranes are of equal masses.
-    alike: Option<f64>,
-    /// For each component of the particles of the block.
-    components: Vec<[f64; D]>,
-}
-
-impl<'a, const D: usize> InverseMass<'a, D> {
-    /// Of particles of these masses.
-    pub(super) fn new(mass: &'a [f64]) -> Self {
-        let alike = mass.first().filter(|first| {
-            let differences = mass.iter().fold(0, |bits, mass| bits | (mass.to_bits() ^ first.to_bits()));
-            differences == 0
-        });
-        Self { mass, alike: alike.map(|&mass| inverse(mass)), components: vec![] }
-    }
-
-    /// Takes in the masses of a block.
-    pub(super) fn see(&mut self, block: Range<usize>) {
-        if self.alike.is_none() {
-            self.components.clear();
-            self.components.extend(self.mass[block].iter().map(|&mass| [inverse(mass); D]));
-        }
-    }
-
-    /// Those of the particles of the block from this one on.
-    pub(super) fn from(&self, particle: usize) -> Inverse<'_> {
-        self.alike.map_or_else(|| Inverse::Each(self.components[particle..].as_flattened()), Inverse::Alike)
-    }
-}
-
-fn inverse(mass: f64) -> f64 {
-    if mass == 0.0 { 0.0 } else { 1.0 / mass }
+    (joined, exceptions)
 }

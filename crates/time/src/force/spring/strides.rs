@@ -13,10 +13,13 @@ use corpuscle_core::{Particles, Vector};
 use rayon::prelude::*;
 
 use super::PARTS_A_THREAD;
-use super::gather::{Drift, Kick};
-use super::lattice::{InverseMass, Lattice, Place};
+use super::gather::{Drift, Kick, LINE, Soon};
+use super::lattice::Lattice;
+use super::masses::{InverseMass, Masses};
+use super::plan::Plan;
+use super::walk::{Block, Walk};
 use crate::constraint::Held;
-use crate::lanes::eight;
+use crate::lanes::eight::{self, LANES};
 use crate::motion::{Moves, Stride, both};
 use crate::threads;
 
@@ -40,14 +43,15 @@ impl Lattice {
 
     /// Takes these strides, one after the other; tells what [`kick_and_drift`](crate::motion::kick_and_drift)
     /// does, of all of them together.
-    pub(super) fn sweep<const D: usize>(&self, particles: &mut Particles<D>, held: &[Held], strides: &[Stride]) -> [bool; 2] {
+    pub(super) fn sweep<const D: usize>(&self, particles: &mut Particles<D>, plan: &Plan, strides: &[Stride]) -> [bool; 2] {
         let Particles { position, velocity, mass, .. } = particles;
         let threads = if threads::are_worth_it(mass.len()) { rayon::current_num_threads() } else { 1 };
         // The fewer, the shorter may parts be: one for each thread at least.
         let together = if threads == 1 { strides.len() } else { mass.len() / (self.shortest_part(1) * threads).max(1) };
         let few = strides.chunks(together.max(1));
-        let sweep = |strides| Sweep { lattice: self, mass, held, strides }.in_parts(position, velocity, PARTS_A_THREAD * threads);
-        few.map(sweep).fold([true; 2], both)
+        let masses = Masses { each: mass, of_all: plan.mass_of_all };
+        let sweep = |strides| Sweep { lattice: self, plan, masses, strides };
+        few.map(|few| sweep(few).in_parts(position, velocity, PARTS_A_THREAD * threads)).fold([true; 2], both)
     }
 
     /// Particles of a part between two others, for so many strides: each recedes from both as far as a kick and a drift reach.
@@ -60,8 +64,8 @@ impl Lattice {
 #[derive(Clone, Copy)]
 struct Sweep<'a> {
     lattice: &'a Lattice,
-    mass: &'a [f64],
-    held: &'a [Held],
+    plan: &'a Plan,
+    masses: Masses<'a>,
     strides: &'a [Stride],
 }
 
@@ -126,17 +130,18 @@ impl Sweep<'_> {
         let Tile { from, position, velocity, bounds } = tile;
         let reach = self.lattice.reach;
         let range = |ways: usize| bounds[0].after(ways * reach)..bounds[1].after(ways * reach);
-        let pass = |(number, &stride)| Pass::new(*self, stride, from, [range(2 * number + 1), range(2 * number + 2)]);
-        let mut passes: Vec<_> = self.strides.iter().enumerate().map(pass).collect();
-        let mut inverse_mass = InverseMass::new(&self.mass[from..from + position.len()]);
+        let pass = |number| Pass::new(*self, number, from, [range(2 * number + 1), range(2 * number + 2)]);
+        let mut passes: Vec<_> = (0..self.strides.len()).map(pass).collect();
+        let mut inverse_mass = InverseMass::new(self.masses, from..from + position.len());
         let (mut front, mut finite) = (range(1).start, [true; 2]);
         while passes.iter().any(|pass| !(pass.kicked.is_empty() && pass.drifting.is_empty())) {
             // In a membrane springs reach from row to row: so much in one piece.
-            front += BLOCK.max(reach);
+            let length = BLOCK.max(reach);
+            front += length;
             // What pulls at particles before this one is where it has to be.
             let mut known = front;
-            for (number, pass) in passes.iter_mut().enumerate() {
-                finite = both(finite, pass.kick(known, position, velocity, &mut inverse_mass, number == 0));
+            for pass in &mut passes {
+                finite = both(finite, pass.kick(known, front..front + length, position, velocity, &mut inverse_mass));
                 finite[1] &= pass.drift(position, velocity);
                 known = pass.done(&pass.drifting);
             }
@@ -165,26 +170,30 @@ fn cut<'a, const D: usize>(
 }
 
 /// One stride on its way through a tile.
-struct Pass<'a> {
+struct Pass<'a, const D: usize> {
     lattice: &'a Lattice,
     stride: Stride,
+    /// How many come before it.
+    number: usize,
+    /// How many there are.
+    all: usize,
     /// The first particle of the tile.
     from: usize,
     /// Particles still to be kicked.
     kicked: Range<usize>,
     /// Particles that still have to drift.
     drifting: Range<usize>,
-    /// The first stretch of those still to be kicked.
-    stretch: usize,
-    /// What is held of particles that still have to drift.
+    walk: Walk<'a, D>,
+    /// What is held of particles that still have to drift, but those that never move.
     held: &'a [Held],
 }
 
-impl<'a> Pass<'a> {
-    fn new(sweep: Sweep<'a>, stride: Stride, from: usize, [kicked, drifting]: [Range<usize>; 2]) -> Self {
-        let Sweep { lattice, held, .. } = sweep;
-        let held = &held[held.partition_point(|held| held.particle < from + drifting.start)..];
-        Self { lattice, stride, from, stretch: lattice.first_stretch(from + kicked.start), kicked, drifting, held }
+impl<'a, const D: usize> Pass<'a, D> {
+    fn new(sweep: Sweep<'a>, number: usize, from: usize, [kicked, drifting]: [Range<usize>; 2]) -> Self {
+        let Sweep { lattice, plan, strides, .. } = sweep;
+        let held = &plan.held[plan.held.partition_point(|held| held.particle < from + drifting.start)..];
+        let walk = Walk::new(lattice, &plan.exceptions, from + kicked.start);
+        Self { lattice, stride: strides[number], number, all: strides.len(), from, walk, kicked, drifting, held }
     }
 
     /// The end of the particles all of whose neighbours are done, where these still are to be done.
@@ -192,47 +201,49 @@ impl<'a> Pass<'a> {
         if rest.is_empty() { usize::MAX } else { rest.start.saturating_sub(self.lattice.reach) }
     }
 
-    /// Kicks the next particles, up to this one at most; tells whether every velocity was finite after the kick that was owed, and, if
-    /// none was, whether it is.
-    fn kick<const D: usize>(
+    /// Kicks the next particles, up to this one at most, and asks for some of what the first stride will need for those it kicks `soon`;
+    /// tells whether every velocity was finite after the kick that was owed, and, if none was, whether it is.
+    fn kick(
         &mut self,
         end: usize,
+        soon: Range<usize>,
         position: &[Vector<D>],
         velocity: &mut [Vector<D>],
         inverse_mass: &mut InverseMass<'_, D>,
-        first: bool,
     ) -> [bool; 2] {
         let Moves { owed, kick, .. } = self.stride.moves;
-        let (start, end) = (self.kicked.start, self.kicked.end.min(end));
-        let mut finite = [true; 2];
+        let (start, end) = (self.kicked.start, whole_lines(velocity, self.kicked.end, end));
         if start >= end {
-            return finite;
+            return [true; 2];
         }
         self.kicked.start = end;
         inverse_mass.see(start..end);
-        let (velocity, later) = velocity.split_at_mut(end);
-        // The first goes where others have not been.
-        let soon = if first { [position.get(end + self.lattice.reach..).unwrap_or(&[]), later] } else { [&[][..]; 2] };
-        for (piece, neighbours) in self.lattice.pieces(self.from + start..self.from + end, &mut self.stretch) {
-            let (piece_start, piece_end) = (piece.start - self.from, piece.end - self.from);
-            let soon = soon.map(|soon| soon.get(piece_start - start..).unwrap_or(&[]));
-            let place = Place { position, own: piece_start, inverse_mass: inverse_mass.from(piece_start - start) };
-            let velocity = Vector::components_mut(&mut velocity[piece_start..piece_end]);
-            let soon = soon.map(Vector::components);
-            match owed {
-                Some(owed) => {
-                    let kicks = Kick::<true> { first: owed, second: kick, soon };
-                    finite[0] &= self.lattice.gather(neighbours, place, velocity, kicks);
-                }
-                None => finite[1] &= self.lattice.gather(neighbours, place, velocity, Kick::one(kick, soon)),
-            }
+        let block = Block { start: self.from + start, position, from: self.from, inverse_mass };
+        let (velocity, later) = velocity[start..].split_at_mut(end - start);
+        let soon = self.share(&soon, position, later, end);
+        match owed {
+            Some(owed) => [self.walk.act(block, velocity, Kick::<true> { first: owed, second: kick, soon }), true],
+            None => [true, self.walk.act(block, velocity, Kick::one(kick, soon))],
         }
-        finite
+    }
+
+    /// This stride's share of what will be needed to kick these particles: positions that no stride has read yet, and velocities, of
+    /// which `later` begins with particle `from`. If the first stride asked for all, memory would be waited for, and then lie idle.
+    fn share<'b>(&self, soon: &Range<usize>, position: &'b [Vector<D>], later: &'b [Vector<D>], from: usize) -> Soon<'b> {
+        let [start, end] = [self.number, self.number + 1].map(|number| soon.start + number * soon.len() / self.all);
+        let some = |values: &'b [Vector<D>], start: usize, end: usize| {
+            let end = end.min(values.len());
+            Vector::components(&values[start.min(end)..end])
+        };
+        let reach = self.lattice.reach;
+        let numbers =
+            [some(position, start + reach, end + reach), some(later, start.saturating_sub(from), end.saturating_sub(from))];
+        Soon { numbers, rarity: self.all.ilog2() }
     }
 
     /// Lets those particles drift that nobody will ask for where they are; tells whether every position is finite.
-    fn drift<const D: usize>(&mut self, position: &mut [Vector<D>], velocity: &mut [Vector<D>]) -> bool {
-        let (start, end) = (self.drifting.start, self.drifting.end.min(self.done(&self.kicked)));
+    fn drift(&mut self, position: &mut [Vector<D>], velocity: &mut [Vector<D>]) -> bool {
+        let (start, end) = (self.drifting.start, whole_lines(position, self.drifting.end, self.done(&self.kicked)));
         if start >= end {
             return true;
         }
@@ -249,6 +260,17 @@ impl<'a> Pass<'a> {
         }
         finite
     }
+}
+
+/// Where to stop on the way to the end of all, if these are the particles that may be reached by now: there, or where a line of the cache
+/// begins before, if any particle's values do.
+fn whole_lines<const D: usize>(values: &[Vector<D>], end_of_all: usize, end: usize) -> usize {
+    if end_of_all <= end {
+        return end_of_all;
+    }
+    let head = Vector::components(values).as_ptr().align_offset(LINE).min(LANES);
+    let back = (0..LANES.min(end + 1)).find(|back| (D * (end - back) + LANES - head).is_multiple_of(LANES));
+    end - back.unwrap_or(0)
 }
 
 #[cfg(test)]
@@ -300,7 +322,12 @@ mod tests {
             confined: false,
         };
         let strides: Vec<_> = (0..8).map(stride).collect();
-        let sweep = |strides| Sweep { lattice: &lattice, mass: &particles.mass, held: &held, strides };
+        for held in &held {
+            held.apply(0.0, &mut particles);
+        }
+        let plan = Plan::new::<3>(&lattice, &particles.mass, &held);
+        let masses = Masses { each: &particles.mass, of_all: None };
+        let sweep = |strides| Sweep { lattice: &lattice, plan: &plan, masses, strides };
         let mut alone = particles.clone();
         for (number, stride) in strides.iter().enumerate() {
             assert_eq!(sweep(std::slice::from_ref(stride)).in_parts(&mut alone.position, &mut alone.velocity, 1), [true; 2]);
@@ -309,12 +336,16 @@ mod tests {
                 assert_eq!(sweep(&strides[..=number]).in_parts(&mut found.position, &mut found.velocity, parts), [true; 2]);
                 assert!(found == alone, "width {width}, {} strides, {parts} parts", number + 1);
             }
+            for held in held.iter().filter(|held| !held.is_driven()) {
+                let [before, after] = [&particles, &alone].map(|particles| particles.position[held.particle][held.axis]);
+                assert_eq!(before.to_bits(), after.to_bits(), "{held:?}");
+            }
         }
         // So many threads that there is no part for each of them unless fewer strides are taken together.
         for threads in [2, 16] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             let mut found = particles.clone();
-            assert_eq!(pool.install(|| lattice.sweep(&mut found, &held, &strides)), [true; 2]);
+            assert_eq!(pool.install(|| lattice.sweep(&mut found, &plan, &strides)), [true; 2]);
             assert!(found == alone, "width {width}, {threads} threads");
         }
     }
