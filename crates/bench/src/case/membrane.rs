@@ -98,9 +98,11 @@ fn run(settings: &Settings) -> Result<Vec<Figure>, Trouble> {
     let mut drift = Drift::<1>::new();
     drift.see_energy(engine.energy());
     let group = WORK_OF_GROUP.div_ceil(count).min(MOST_OF_GROUP) as u64;
-    let taken = steps::take(&mut engine, clock, settings.real("seconds"), group, |_| {})?;
+    let mut memory = Memory::new(3 * count, clock);
+    // In turn: both meet the same machine, whatever else it does.
+    let taken = steps::take(&mut engine, clock, settings.real("seconds"), group, |_| memory.pass())?;
     drift.see_energy(engine.energy());
-    let bandwidth = bandwidth(3 * count, clock, 0.2 * settings.real("seconds"));
+    let bandwidth = memory.bytes_per_second();
     let milliseconds = 1e3 / taken.per_second();
     let floor = 1e3 * BYTES * count as f64 / bandwidth;
 
@@ -121,22 +123,45 @@ fn run(settings: &Settings) -> Result<Vec<Figure>, Trouble> {
     Ok(figures)
 }
 
-/// Bytes a second of `a += s b` over arrays of so many numbers, on the threads of this pool: the best of passes for so many
-/// seconds, and of five at least.
-fn bandwidth(length: usize, clock: Clock, seconds: f64) -> f64 {
-    let (mut a, b) = (vec![0.0f64; length], vec![1.0f64; length]);
-    let chunk = length.div_ceil(rayon::current_num_threads());
-    let (whole, mut best, mut passes) = (clock.start(), f64::INFINITY, 0);
-    while passes < 5 || whole.seconds() < seconds {
-        let running = clock.start();
-        a.par_chunks_mut(chunk).zip(b.par_chunks(chunk)).for_each(|(a, b)| {
+/// How fast memory is: `a += s b` over arrays of so many numbers, on the threads of this pool.
+struct Memory {
+    a: Vec<f64>,
+    b: Vec<f64>,
+    clock: Clock,
+    passes: usize,
+    seconds: f64,
+}
+
+impl Memory {
+    /// Passes in a row that are timed.
+    const IN_A_ROW: usize = 8;
+
+    fn new(length: usize, clock: Clock) -> Self {
+        Self { a: vec![0.0; length], b: vec![1.0; length], clock, passes: 0, seconds: 0.0 }
+    }
+
+    /// Goes through the arrays a few times.
+    fn pass(&mut self) {
+        self.go(); // brings back what the engine drove out of the caches, or the system has yet to give
+        let running = self.clock.start();
+        for _ in 0..Self::IN_A_ROW {
+            self.go();
+        }
+        self.seconds += running.seconds();
+        self.passes += Self::IN_A_ROW;
+    }
+
+    fn go(&mut self) {
+        let chunk = self.a.len().div_ceil(rayon::current_num_threads());
+        self.a.par_chunks_mut(chunk).zip(self.b.par_chunks(chunk)).for_each(|(a, b)| {
             for (a, b) in a.iter_mut().zip(b) {
                 *a += 0.5 * b;
             }
         });
-        best = best.min(running.seconds());
-        passes += 1;
     }
-    // Read twice, written once.
-    24.0 * std::hint::black_box(&a).len() as f64 / best
+
+    /// In the mean over all passes: read twice, written once.
+    fn bytes_per_second(&self) -> f64 {
+        24.0 * std::hint::black_box(&self.a).len() as f64 * self.passes as f64 / self.seconds
+    }
 }
