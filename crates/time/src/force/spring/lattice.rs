@@ -133,7 +133,7 @@ impl Lattice {
         }
     }
 
-    /// All particles that are not treated as those beside them; nothing is ever done to these, which are in their order.
+    /// All particles that are not treated as those beside them, among them those given, in their order, to which nothing is done.
     pub(super) fn exceptions(&self, still: &[usize]) -> Vec<Exception> {
         let mut own = self.exceptions.iter().peekable();
         let mut all = Vec::with_capacity(self.exceptions.len() + still.len());
