@@ -20,14 +20,13 @@ impl<const D: usize> Resume for TimeDriven<D> {
 
     fn load(&mut self, from: &mut Reader<'_>) -> Result<(), Fault> {
         from.fields(5)?;
-        // First: what fails half-way must not leave what was known of the particles before.
-        (self.system.doubtful, self.system.at_once) = (true, None);
         (self.steps, self.time) = (from.value("steps")?, from.value("time")?);
         let images: Vec<i64> = from.value("images")?;
         self.system.images = images.as_chunks().0.to_vec();
         from.part("system", &mut self.system)?;
         from.part("integrator", &mut self.stepper)?;
         self.validate()?;
+        (self.system.doubtful, self.system.at_once) = (true, None);
         self.keep();
         Ok(())
     }
