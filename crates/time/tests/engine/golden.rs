@@ -5,7 +5,9 @@ use std::process::Command;
 
 use corpuscle_core::placement::{lattice, maxwell};
 use corpuscle_core::{Axis, Boundary, Engine, Particles, Random, Vector};
-use corpuscle_time::{Force, Gravity, Integrator, LennardJones, PairForce, Spring, Springs, TimeDriven, WeeksChandlerAndersen};
+use corpuscle_time::{
+    Drive, Force, Gravity, Integrator, LennardJones, PairForce, Pin, Signal, Spring, Springs, TimeDriven, WeeksChandlerAndersen,
+};
 
 /// FNV-1a of the bits of all positions and velocities.
 fn fingerprint<const D: usize>(particles: &Particles<D>) -> u64 {
@@ -137,6 +139,33 @@ fn of_a_chain() {
     check("chain", chain, 40.0, CHAIN);
 }
 
+/// Large enough for several steps in one sweep, and for threads.
+#[test]
+fn of_a_membrane() {
+    let (width, height) = (200, 150);
+    let membrane = || {
+        let mut particles = Particles::<3>::new();
+        let mut random = Random::new(64, 0);
+        let (mut springs, mut rim) = (vec![], vec![]);
+        for k in 0..width * height {
+            let (x, y) = (k % width, k / width);
+            particles.push(Vector([x as f64, y as f64, random.normal()]), Vector::ZERO, 1.0, 0.0, 0);
+            springs.extend((x > 0).then(|| Spring::new(k - 1, k, 1.0, 0.0)));
+            springs.extend((y > 0).then(|| Spring::new(k - width, k, 0.7, 0.0)));
+            if x == 0 || y == 0 || x + 1 == width || y + 1 == height {
+                rim.push(Pin { particle: k, axes: [true; 3] });
+            }
+        }
+        let signal = Signal::Sine { amplitude: 2.0, angular_frequency: 0.5, phase: 0.0, ramp: 3.0 };
+        let drive = Drive { particle: 75 * width + 60, axis: 2, signal };
+        let space = Boundary::new([0.0; 3], [width as f64; 3], Axis::Open);
+        let engine =
+            TimeDriven::new(space, particles, vec![Box::new(Springs::new(springs))], Integrator::VelocityVerlet { dt: 0.1 });
+        engine.unwrap().with_pins(rim).unwrap().with_drives(vec![drive]).unwrap()
+    };
+    check("membrane", membrane, 10.0, MEMBRANE);
+}
+
 const PERIODIC: u64 = 0xcd6e_49b6_2597_2bff;
 const PERIODIC_PLANE: u64 = 0x366a_b24b_730a_7adc;
 const WALLS_PLANE: u64 = 0xbbac_8b3d_cf8c_5665;
@@ -147,3 +176,4 @@ const BATH: u64 = 0x5fb8_fa74_ed10_2285;
 const STARS: u64 = 0x4be0_a82f_11f7_8a0b;
 const STARS_AGAIN: u64 = 0xc3f5_84b5_601f_84bf;
 const CHAIN: u64 = 0xe683_801f_25ae_9276;
+const MEMBRANE: u64 = 0x950d_36f2_1b4c_e9fc;
