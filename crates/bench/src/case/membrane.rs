@@ -32,7 +32,7 @@ const STEP: f64 = 0.1;
 /// Bytes a mass and step that have to go through the memory, were each number read or written once: position and velocity in and out,
 /// the mass in.
 const BYTES: f64 = 104.0;
-/// Masses times steps between two looks at the clock. Where an engine stops, it finds all accelerations once more.
+/// Masses times steps between two looks at the clock. Where an engine stops, the last kick is a pass of its own.
 const WORK_OF_GROUP: usize = 128_000_000;
 /// The most steps, so that few masses do not take longer than asked for.
 const MOST_OF_GROUP: usize = 2000;

@@ -130,7 +130,8 @@ pub struct Springs {
     given: Vec<Spring>,
     /// How linear springs of a regular arrangement are handled; all others, or at periodic axes, are runs.
     lattice: Option<Lattice>,
-    /// What the lattice has to know of the particles, until something else changes than places and velocities.
+    /// What the lattice has to know of the particles to take strides, until something else changes than places and velocities; none where
+    /// it is not what takes them.
     plan: Option<Plan>,
     runs: Vec<Run>,
     /// Where the runs of each block of first ends begin, and the last ends.
@@ -215,7 +216,7 @@ impl<const D: usize> Strider<D> for Springs {
     /// there is friction, which would need the accelerations before.
     fn strides_at_once(&mut self, state: &State<'_, D>) -> usize {
         let State { boundary, particles, held, .. } = state;
-        self.plan = self.lattice.as_ref().map(|lattice| Plan::new::<D>(lattice, &particles.mass, held));
+        self.plan = self.lattice(boundary).map(|lattice| Plan::new::<D>(lattice, &particles.mass, held));
         if self.reach > FARTHEST || self.damped {
             return 0;
         }
@@ -225,7 +226,7 @@ impl<const D: usize> Strider<D> for Springs {
 
     fn stride(&mut self, state: State<'_, D>, strides: &[Stride]) -> Progress {
         let State { boundary, particles, held, .. } = state;
-        let finite = if let (Some(lattice), Some(plan)) = (self.lattice(boundary), &self.plan) {
+        let finite = if let (Some(lattice), Some(plan)) = (&self.lattice, &self.plan) {
             lattice.sweep(particles, plan, strides)
         } else {
             let one = |stride: &Stride| self.scatter(boundary, particles, held, *stride);
@@ -235,10 +236,10 @@ impl<const D: usize> Strider<D> for Springs {
     }
 
     fn kick(&mut self, state: State<'_, D>, dt: f64) -> Option<bool> {
-        let State { boundary, particles, .. } = state;
+        let (lattice, plan) = (self.lattice.as_ref()?, self.plan.as_ref()?);
         // Where memory takes the time; else accelerations kept for the next step save as much as they cost.
-        let lattice = self.lattice(boundary).filter(|lattice| lattice.strides_at_once::<D>(particles.len()) > 1)?;
-        Some(lattice.kick(particles, self.plan.as_ref()?, dt))
+        let worth_it = lattice.strides_at_once::<D>(state.particles.len()) > 1;
+        worth_it.then(|| lattice.kick(state.particles, plan, dt))
     }
 }
 

@@ -28,7 +28,7 @@ const EXCEPTIONS: usize = 8;
 const TO_AN_EXCEPTION: usize = 4;
 
 /// For each particle the springs at it, in the order of their other ends; stretches of particles whose springs are alike share them.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(super) struct Lattice {
     pub(super) stretches: Vec<Stretch>,
     exceptions: Vec<Exception>,
@@ -38,7 +38,7 @@ pub(super) struct Lattice {
     pub(super) instructions: Instructions,
 }
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(super) struct Stretch {
     pub(super) particles: Range<usize>,
     pub(super) neighbours: Range<usize>,

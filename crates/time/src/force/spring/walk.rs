@@ -10,7 +10,7 @@ use super::masses::{Inverse, InverseMass};
 use crate::lanes::eight::{self, LANES};
 
 /// A particle that is not treated as those beside it in memory: where the rows of a membrane end.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(super) struct Exception {
     pub(super) particle: usize,
     /// What pulls at it; nothing is done to it without.
